@@ -18,7 +18,7 @@ use pseudopod::mechanics::course::Course;
 use pseudopod::mechanics::integrator::{Integrator, Method, Order, StepSize};
 use pseudopod::mechanics::load::Load;
 use pseudopod::mechanics::shape_memory::{Reaction, ShapeMemory};
-use pseudopod::sim::{Kind, Model, Plane, State, Workspace, step};
+use pseudopod::sim::{Kind, Model, Obstacle, State, Workspace, step};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::path::Path;
@@ -78,11 +78,7 @@ fn scene(method: Method, acting: Acting, cells: usize) -> Model {
         Acting::Elastic | Acting::Forces => {}
         Acting::Loads => kind.forces.extend([pull(Vec3::z(), 0), pull(-Vec3::z(), 7)]),
         Acting::Planes => {
-            let plane = |name: &str, side: f64| Plane {
-                name: name.to_owned(),
-                point: Vec3::new(0.0, 0.0, side * 4.9),
-                normal: Vec3::new(0.0, 0.0, -side),
-            };
+            let plane = |name: &str, side: f64| Obstacle::plane(name, 4.9 * side * Vec3::z(), -side * Vec3::z());
             planes = vec![plane("floor", -1.0), plane("roof", 1.0)];
         }
         Acting::Motility => {

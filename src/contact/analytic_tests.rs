@@ -2,10 +2,11 @@
 
 use super::test_scenes::{Stage, stage};
 use super::{
-    AtomContact, Contacts, Detector, EdgeContact, Feature, Plane, Reach, Scene, Shape, Sides, add_walls_of_grooves,
+    AtomContact, Contacts, Detector, EdgeContact, Feature, Reach, Scene, Shape, Sides, add_walls_of_grooves,
     detect_all_pairs, find_overlaps, winding_number,
 };
 use crate::Vec3;
+use crate::geometry::Obstacle;
 use crate::geometry::{Surface, icosphere, sheet, translate};
 
 const REACH: Reach = Reach { proximity: 0.2, depth: 0.2, margin: 0.1 };
@@ -317,10 +318,10 @@ fn sheets_have_one_outside_or_two_and_none_beyond_their_rim() {
 #[test]
 fn atoms_behind_a_plane_are_found_however_deep() {
     let sphere = icosphere(1.0, 1);
-    let plane = Plane { point: Vec3::z() * 5.0, normal: Vec3::z() };
-    let stage = stage(&[(&sphere, Sides::Outer, sphere.positions.clone())], vec![plane], REACH);
+    let obstacle = Obstacle::Plane { point: Vec3::z() * 5.0, normal: Vec3::z() };
+    let stage = stage(&[(&sphere, Sides::Outer, sphere.positions.clone())], vec![obstacle], REACH);
     let contacts = detect(&stage);
-    assert_eq!(contacts.planes.len(), 42);
+    assert_eq!(contacts.obstacles.len(), 42);
     assert!((contacts.smallest_gap() + 6.0).abs() < 0.2);
 }
 

@@ -6,6 +6,7 @@ use super::inside::{Overlap, find_overlaps, find_overlaps_again};
 use super::scene::Scene;
 use super::separation::separation;
 use crate::Vec3;
+use crate::geometry::{Beside, Obstacle};
 
 /// What bodies may do while they are pushed apart.
 #[derive(Debug, Clone, Copy)]
@@ -22,7 +23,7 @@ pub struct Yielding<'a> {
 
 /// Moves bodies as wholes until none overlaps another. In a round every pair that overlaps asks for the shortest displacement
 /// apart along the line of centres, or along the normal of their overlap where that is clearly shorter; a body makes the
-/// sum of what its pairs ask for. No body is moved behind a plane, or farther behind it than it was. Returns how far each
+/// sum of what its pairs ask for. No body is moved behind an obstacle, or farther behind it than it was. Returns how far each
 /// has been moved, µm, and what still overlaps. Each round that begins is told, with the number of pairs that overlap. Deterministic,
 /// whatever the threads.
 ///
@@ -63,7 +64,7 @@ pub fn push_apart(
         for (body, displacement) in
             bodies.clone().zip(&mut moves).filter(|(_, displacement)| **displacement != Vec3::zeros())
         {
-            let back = back_before_planes(scene, body, positions, &floors[body as usize]);
+            let back = back_before_obstacles(scene, body, positions, &floors[body as usize]);
             *displacement += back;
             moved[body as usize] |= back != Vec3::zeros();
         }
@@ -82,13 +83,16 @@ fn shares(resistance: f64, other: f64) -> [f64; 2] {
     }
 }
 
-/// Heights of a body's lowest atom over each plane, µm.
+/// Heights of a body's lowest atom over each obstacle, µm.
 fn heights<'a>(scene: &'a Scene, body: u32, positions: &'a [Vec3]) -> impl Iterator<Item = f64> + 'a {
-    let atoms = scene.of_body(body, positions);
-    scene
-        .planes
-        .iter()
-        .map(move |plane| atoms.iter().map(|x| (x - plane.point).dot(&plane.normal)).fold(f64::INFINITY, f64::min))
+    scene.obstacles.iter().map(move |obstacle| lowest(obstacle, scene.of_body(body, positions)).gap)
+}
+
+/// Where the lowest of some atoms is over an obstacle.
+fn lowest(obstacle: &Obstacle, atoms: &[Vec3]) -> Beside {
+    let none = Beside { gap: f64::INFINITY, normal: Vec3::zeros() };
+    let all = atoms.iter().map(|x| obstacle.beside(x));
+    all.fold(none, |lowest, beside| if beside.gap < lowest.gap { beside } else { lowest })
 }
 
 fn shift(scene: &Scene, body: u32, positions: &mut [Vec3], step: Vec3) {
@@ -97,18 +101,18 @@ fn shift(scene: &Scene, body: u32, positions: &mut [Vec3], step: Vec3) {
     positions[first..first + atoms].iter_mut().for_each(|x| *x += step);
 }
 
-/// Times that a body is put back before all planes; where two of them meet, one puts it behind the other a little.
+/// Times that a body is put back before all obstacles; where two of them meet, one puts it behind the other a little.
 const TURNS: u32 = 8;
 
-/// Puts a body back to where no plane is passed, and tells how far.
-fn back_before_planes(scene: &Scene, body: u32, positions: &mut [Vec3], floors: &[f64]) -> Vec3 {
+/// Puts a body back to where no obstacle is passed, and tells how far.
+fn back_before_obstacles(scene: &Scene, body: u32, positions: &mut [Vec3], floors: &[f64]) -> Vec3 {
     let mut back = Vec3::zeros();
     for _ in 0..TURNS {
         let mut good = true;
-        for (number, plane) in scene.planes.iter().enumerate() {
-            let height = heights(scene, body, positions).nth(number).unwrap_or(f64::INFINITY);
-            if height < floors[number] {
-                let step = (floors[number] - height) * plane.normal;
+        for (number, obstacle) in scene.obstacles.iter().enumerate() {
+            let Beside { gap, normal } = lowest(obstacle, scene.of_body(body, positions));
+            if gap < floors[number] {
+                let step = (floors[number] - gap) * normal;
                 shift(scene, body, positions, step);
                 (back, good) = (back + step, false);
             }

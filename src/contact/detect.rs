@@ -5,13 +5,14 @@ use rayon::prelude::*;
 use super::atom_facet::{Low, find_atom_contacts};
 use super::collected::Collected;
 use super::edge_edge::find_edge_contacts;
-use super::found::{Contacts, PlaneContact, push};
+use super::found::{Contacts, ObstacleContact, push};
 use super::lists::{Boxes, Lists, Moved, levels_over};
 use super::motion::Motion;
 use super::near::Near;
 use super::neighbours::Neighbours;
 use super::scene::Scene;
 use crate::Vec3;
+use crate::geometry::Beside;
 
 /// What a detection did.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -220,22 +221,27 @@ fn look(
         }
     }
     for body in bodies {
-        find_plane_contacts(scene, positions, body, &mut contacts.planes);
+        find_obstacle_contacts(scene, positions, body, &mut contacts.obstacles);
     }
 }
 
-/// Adds the atoms of a body that are near a plane or behind it.
-pub(super) fn find_plane_contacts(scene: &Scene, positions: &[Vec3], body: u32, contacts: &mut Vec<PlaneContact>) {
-    if scene.planes.is_empty() {
+/// Adds the atoms of a body that are near an obstacle or behind it.
+pub(super) fn find_obstacle_contacts(
+    scene: &Scene,
+    positions: &[Vec3],
+    body: u32,
+    contacts: &mut Vec<ObstacleContact>,
+) {
+    if scene.obstacles.is_empty() {
         return;
     }
     let (first, shape) = (scene.bodies[body as usize].first_atom, scene.shape(body));
     let atoms = scene.of_body(body, positions).iter().zip(first..);
     for (position, atom) in atoms.filter(|(_, atom)| shape.is_outer((atom - first) as usize)) {
-        for (plane, number) in scene.planes.iter().zip(0..) {
-            let gap = (position - plane.point).dot(&plane.normal);
+        for (obstacle, number) in scene.obstacles.iter().zip(0..) {
+            let Beside { gap, normal } = obstacle.beside(position);
             if gap < scene.reach.proximity {
-                push(contacts, PlaneContact { atom, plane: number, gap });
+                push(contacts, ObstacleContact { atom, obstacle: number, gap, normal: normal.into() });
             }
         }
     }

@@ -1,4 +1,4 @@
-//! What detection finds: atoms on facets, edges on edges, atoms on planes.
+//! What detection finds: atoms on facets, edges on edges, atoms on obstacles.
 
 use super::closest::Feature;
 use super::scene::Scene;
@@ -101,15 +101,17 @@ impl EdgeContact {
     }
 }
 
-/// An atom near a rigid plane or behind it, however far.
+/// An atom near a rigid obstacle or behind it, however far.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PlaneContact {
+pub struct ObstacleContact {
     /// The atom, numbered through the scene.
     pub atom: u32,
-    /// The plane, as numbered in the scene; it has the normal.
-    pub plane: u32,
-    /// Distance, µm; negative behind the plane.
+    /// The obstacle, as numbered in the scene.
+    pub obstacle: u32,
+    /// Distance, µm; negative behind the obstacle.
     pub gap: f64,
+    /// Unit normal of the obstacle there, towards the free side, to seven digits.
+    pub normal: Normal,
 }
 
 /// All contacts, each list ordered by its first number, then its second.
@@ -119,8 +121,8 @@ pub struct Contacts {
     pub atoms: Vec<AtomContact>,
     /// Edges on edges, ordered by first edge, then second.
     pub edges: Vec<EdgeContact>,
-    /// Atoms on planes, ordered by atom, then plane.
-    pub planes: Vec<PlaneContact>,
+    /// Atoms on obstacles, ordered by atom, then obstacle.
+    pub obstacles: Vec<ObstacleContact>,
 }
 
 impl Contacts {
@@ -128,29 +130,29 @@ impl Contacts {
     pub fn smallest_gap(&self) -> f64 {
         let of_atoms = self.atoms.iter().map(|contact| contact.gap);
         let of_edges = self.edges.iter().map(|contact| contact.gap);
-        let of_planes = self.planes.iter().map(|contact| contact.gap);
-        of_atoms.chain(of_edges).chain(of_planes).fold(f64::INFINITY, f64::min)
+        let of_obstacles = self.obstacles.iter().map(|contact| contact.gap);
+        of_atoms.chain(of_edges).chain(of_obstacles).fold(f64::INFINITY, f64::min)
     }
 
     /// Forgets all contacts and keeps the memory.
     pub fn clear(&mut self) {
         self.atoms.clear();
         self.edges.clear();
-        self.planes.clear();
+        self.obstacles.clear();
     }
 
     /// Adds those of other bodies, behind these.
     pub(super) fn append(&mut self, others: &Self) {
         append(&mut self.atoms, &others.atoms);
         append(&mut self.edges, &others.edges);
-        append(&mut self.planes, &others.planes);
+        append(&mut self.obstacles, &others.obstacles);
     }
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         size_of::<AtomContact>() * self.atoms.capacity()
             + size_of::<EdgeContact>() * self.edges.capacity()
-            + size_of::<PlaneContact>() * self.planes.capacity()
+            + size_of::<ObstacleContact>() * self.obstacles.capacity()
     }
 }
 

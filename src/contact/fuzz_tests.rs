@@ -31,7 +31,7 @@ fn kept_pairs_find_exactly_what_all_pairs_find_while_everything_moves() {
             kept += usize::from(!detection.collected);
             found[0] += contacts.atoms.len();
             found[1] += contacts.edges.len();
-            found[2] += contacts.planes.len();
+            found[2] += contacts.obstacles.len();
             // Three such steps pass half of the margin for some atom.
             stage.positions.iter_mut().for_each(|x| *x += dice.vector() * 0.02);
         }

@@ -42,7 +42,7 @@ pub use closest::{FacetPoint, Feature, closest_on_facet, closest_on_segments};
 pub use depth::find_deeper;
 pub use detect::{Detection, Detector};
 pub use edge_edge::edges_still_touch;
-pub use found::{AtomContact, Contacts, EdgeContact, Facing, Normal, PlaneContact};
+pub use found::{AtomContact, Contacts, EdgeContact, Facing, Normal, ObstacleContact};
 pub use groove::add_walls_of_grooves;
 pub use inside::{Overlap, centre_is_inside, find_centre_inside, find_overlaps, find_overlaps_told, winding_number};
 pub use near_facets::{Near, NearFacets};
@@ -50,7 +50,7 @@ pub use opening::{Opening, SURELY, opening_to_facet, opening_to_feature, opening
 pub use openings::{Openings, PAIRS};
 pub use passages::{Coverage, Pair, Passage};
 pub use reference::detect_all_pairs;
-pub use scene::{Body, Plane, Reach, Scene};
+pub use scene::{Body, Reach, Scene};
 pub use shape::{Shape, Sides};
 pub use swept::{atom_meets_facet, edges_meet};
 pub use travel::{Itself, Stride, Travel};

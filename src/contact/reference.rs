@@ -1,7 +1,7 @@
 //! All pairs, without boxes or lists kept: slow, and what detection is held against.
 
 use super::atom_facet::find_atom_contacts;
-use super::detect::find_plane_contacts;
+use super::detect::find_obstacle_contacts;
 use super::edge_edge::find_edge_contacts;
 use super::found::Contacts;
 use super::scene::Scene;
@@ -33,7 +33,7 @@ pub fn detect_all_pairs(scene: &Scene, positions: &[Vec3], contacts: &mut Contac
                 find_edge_contacts(scene, positions, [body, other], edge, part, &mut first, &mut contacts.edges);
             }
         }
-        find_plane_contacts(scene, positions, body, &mut contacts.planes);
+        find_obstacle_contacts(scene, positions, body, &mut contacts.obstacles);
     }
 }
 

@@ -1,4 +1,4 @@
-//! Everything that can touch: the surfaces of cells, sheets and rigid bodies, one after the other, and rigid planes.
+//! Everything that can touch: the surfaces of cells, sheets and rigid bodies, one after the other, and rigid obstacles.
 
 use std::sync::Arc;
 
@@ -6,6 +6,7 @@ use super::boxes::Levels;
 use super::owners::Owners;
 use super::shape::{Shape, Sides};
 use crate::Vec3;
+use crate::geometry::Obstacle;
 
 /// How near is a contact. All three are lengths in µm.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,15 +38,6 @@ impl Reach {
     }
 }
 
-/// A rigid plane: no atom belongs behind it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Plane {
-    /// A point of the plane, µm.
-    pub point: Vec3,
-    /// Unit normal towards the free side.
-    pub normal: Vec3,
-}
-
 /// One surface in a scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Body {
@@ -74,8 +66,8 @@ pub struct Scene {
     pub shapes: Arc<[Shape]>,
     /// All surfaces; atoms, facets and edges are numbered through in this order.
     pub bodies: Vec<Body>,
-    /// Rigid planes.
-    pub planes: Vec<Plane>,
+    /// Rigid obstacles.
+    pub obstacles: Vec<Obstacle>,
     /// How near is a contact.
     pub reach: Reach,
     /// Number of atoms of all bodies.
@@ -100,7 +92,12 @@ impl Scene {
     /// # Panics
     /// When a body names a shape that is not there, when a length of `reach` is negative or not finite, or when there
     /// are 2³¹ facets or edges or more.
-    pub fn new(shapes: impl Into<Arc<[Shape]>>, shape_of_body: &[usize], planes: Vec<Plane>, reach: Reach) -> Self {
+    pub fn new(
+        shapes: impl Into<Arc<[Shape]>>,
+        shape_of_body: &[usize],
+        obstacles: Vec<Obstacle>,
+        reach: Reach,
+    ) -> Self {
         let shapes = shapes.into();
         let lengths = [reach.proximity, reach.depth, reach.margin];
         assert!(lengths.iter().all(|length| length.is_finite() && *length >= 0.0), "a reach below zero: {reach:?}");
@@ -134,7 +131,7 @@ impl Scene {
             let count = |shape: &usize| [shapes[*shape].atoms, shapes[*shape].facets.len(), shapes[*shape].edges.len()];
             Owners::of(shape_of_body.iter().map(|shape| count(shape)[what]))
         });
-        Self { shapes, bodies, planes, reach, atoms, facets, owners, levels, batches }
+        Self { shapes, bodies, obstacles, reach, atoms, facets, owners, levels, batches }
     }
 
     /// The mesh of a body.

@@ -1,7 +1,8 @@
 //! Random scenes for tests: round, squeezed, bent and noisy cells, sheets, packed and overlapping.
 
-use super::{Plane, Reach, Scene, Shape, Sides};
+use super::{Reach, Scene, Shape, Sides};
 use crate::Vec3;
+use crate::geometry::Obstacle;
 use crate::geometry::{Surface, icosphere, red_cell, sheet};
 
 /// Numbers uniform in [−1, 1) (splitmix64): a seed gives the same scene on every machine.
@@ -32,10 +33,10 @@ pub struct Stage {
 }
 
 /// Bodies in a scene, from surfaces at rest and positions of their atoms.
-pub fn stage(bodies: &[(&Surface, Sides, Vec<Vec3>)], planes: Vec<Plane>, reach: Reach) -> Stage {
+pub fn stage(bodies: &[(&Surface, Sides, Vec<Vec3>)], obstacles: Vec<Obstacle>, reach: Reach) -> Stage {
     let shapes: Vec<Shape> =
         bodies.iter().map(|(rest, sides, _)| Shape::new(rest, *sides, 1.5 * reach.proximity)).collect();
-    let scene = Scene::new(shapes, &(0..bodies.len()).collect::<Vec<_>>(), planes, reach);
+    let scene = Scene::new(shapes, &(0..bodies.len()).collect::<Vec<_>>(), obstacles, reach);
     Stage { scene, positions: bodies.iter().flat_map(|body| body.2.iter().copied()).collect() }
 }
 
@@ -49,7 +50,7 @@ pub fn deform(rest: &Surface, dice: &mut Dice, bend: f64, noise: f64) -> Vec<Vec
     rest.positions.iter().map(position).collect()
 }
 
-/// Three to eight bodies of all kinds close together, many of them overlapping, and two planes.
+/// Three to eight bodies of all kinds close together, many of them overlapping, and two obstacles.
 pub fn random_stage(seed: u64) -> Stage {
     let mut dice = Dice(seed);
     let reach = Reach { proximity: 0.15 + 0.1 * dice.roll(), depth: 0.2, margin: 0.15 };
@@ -74,11 +75,11 @@ pub fn random_stage(seed: u64) -> Stage {
             (rest, *sides, points)
         })
         .collect();
-    let planes = vec![
-        Plane { point: Vec3::z() * -1.5, normal: Vec3::z() },
-        Plane { point: Vec3::x() * 2.5, normal: -Vec3::x() },
+    let obstacles = vec![
+        Obstacle::Plane { point: Vec3::z() * -1.5, normal: Vec3::z() },
+        Obstacle::Plane { point: Vec3::x() * 2.5, normal: -Vec3::x() },
     ];
-    stage(&bodies, planes, reach)
+    stage(&bodies, obstacles, reach)
 }
 
 /// `count` cells of 42 atoms on an fcc lattice, turned, flattened where they meet and noisy, so that one in three atoms

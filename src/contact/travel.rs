@@ -54,13 +54,13 @@ pub struct Stride {
     to_itself: f64,
     /// Its box where the step begins.
     bounds: Bounds,
-    /// How far atoms go that are near planes, over what is safe.
-    to_planes: f64,
+    /// How far atoms go that are near obstacles, over what is safe.
+    to_obstacles: f64,
 }
 
 impl Stride {
     /// None, of nothing.
-    pub const NONE: Self = Self { motion: Motion::NONE, to_itself: 0.0, bounds: Bounds::EMPTY, to_planes: 0.0 };
+    pub const NONE: Self = Self { motion: Motion::NONE, to_itself: 0.0, bounds: Bounds::EMPTY, to_obstacles: 0.0 };
 
     /// That of so many atoms, which go from one position to another, µm.
     #[inline]
@@ -73,16 +73,15 @@ impl Stride {
         let safe = scene.safe_travel();
         let (mut low, mut high, mut sum, mut middle) =
             (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY), Vec3::zeros(), Vec3::zeros());
-        let (mut farthest, mut to_planes): (f64, f64) = (0.0, 0.0);
+        let (mut farthest, mut to_obstacles): (f64, f64) = (0.0, 0.0);
         for atom in 0..atoms {
             let (start, end) = (from(atom), to(atom));
             let displacement = end - start;
             (low, high, sum, middle) = (low.inf(&start), high.sup(&start), sum + displacement, middle + start);
             farthest = farthest.max(displacement.norm_squared());
-            for plane in &scene.planes {
-                let height = (start - plane.point).dot(&plane.normal);
-                let towards = -displacement.dot(&plane.normal);
-                to_planes = to_planes.max(towards / safe.max(height));
+            for obstacle in &scene.obstacles {
+                let towards = obstacle.approach(&start, &displacement);
+                to_obstacles = to_obstacles.max(towards / safe.max(obstacle.gap(&start)));
             }
         }
         let [mean, middle] = [sum, middle].map(|sum| sum / atoms.max(1) as f64);
@@ -95,12 +94,12 @@ impl Stride {
             Itself::Anywhere => false,
         };
         let to_itself = if to_itself < LEAST || stays_round() { 0.0 } else { to_itself };
-        Self { motion, to_itself, bounds: Bounds::between(low, high), to_planes }
+        Self { motion, to_itself, bounds: Bounds::between(low, high), to_obstacles }
     }
 
-    /// What it goes by itself, over what is safe: towards planes, beside itself, and from what is near.
+    /// What it goes by itself, over what is safe: towards obstacles, beside itself, and from what is near.
     fn alone(&self, safe: f64) -> f64 {
-        self.to_planes.max(self.to_itself).max(self.motion.farthest / (FARTHEST * safe))
+        self.to_obstacles.max(self.to_itself).max(self.motion.farthest / (FARTHEST * safe))
     }
 
     /// What two bodies go beside each other, over what is safe: what would bring them to each other, or twice the safe travel where that is

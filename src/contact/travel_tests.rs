@@ -2,8 +2,9 @@
 
 use super::inside::passes_through;
 use super::test_scenes::{Dice, deform, packed_stage, stage};
-use super::{Detector, Itself, Plane, Reach, Scene, Sides, Stride, atom_meets_facet, closest_on_facet};
+use super::{Detector, Itself, Reach, Scene, Sides, Stride, atom_meets_facet, closest_on_facet};
 use crate::Vec3;
+use crate::geometry::Obstacle;
 
 const REACH: Reach = Reach { proximity: 0.2, depth: 0.2, margin: 0.1 };
 
@@ -103,9 +104,9 @@ fn meetings(scene: &Scene, before: &[Vec3], after: &[Vec3]) -> usize {
 #[test]
 fn atoms_near_planes_go_no_farther_than_is_safe_and_those_far_from_them_no_farther_than_they_are() {
     let ball = crate::geometry::icosphere(1.0, 1);
-    let plane = |height: f64| Plane { point: Vec3::z() * height, normal: Vec3::z() };
+    let obstacle = |height: f64| Obstacle::Plane { point: Vec3::z() * height, normal: Vec3::z() };
     let share = |height: f64, displacement: Vec3| {
-        let stage = stage(&[(&ball, Sides::Outer, ball.positions.clone())], vec![plane(height)], REACH);
+        let stage = stage(&[(&ball, Sides::Outer, ball.positions.clone())], vec![obstacle(height)], REACH);
         let after: Vec<Vec3> = stage.positions.iter().map(|x| x + displacement).collect();
         measure(&mut Detector::default(), &stage.scene, &stage.positions, &after)
     };

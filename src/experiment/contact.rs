@@ -224,20 +224,20 @@ pub struct Between {
 pub(super) enum Pair {
     /// Two types, by number, the smaller first.
     Types(usize, usize),
-    /// A type and a plane.
-    OnPlane(usize, usize),
+    /// A type and a plane or, numbered behind all planes, a tool.
+    OnObstacle(usize, usize),
 }
 
 impl Between {
     /// The meaning of the pair; none where a name is unknown or both are planes.
     pub(super) fn pair(&self, experiment: &super::Experiment) -> Option<Pair> {
         let kind = |name: &str| experiment.cells.get_index_of(name);
-        let plane = |name: &str| experiment.planes.iter().position(|plane| plane.name == name);
+        let obstacle = |name: &str| experiment.obstacles().position(|known| known == name);
         let [first, second] = &self.types;
         match (kind(first), kind(second)) {
             (Some(one), Some(other)) => Some(Pair::Types(one.min(other), one.max(other))),
-            (Some(one), None) => plane(second).map(|plane| Pair::OnPlane(one, plane)),
-            (None, Some(one)) => plane(first).map(|plane| Pair::OnPlane(one, plane)),
+            (Some(one), None) => obstacle(second).map(|other| Pair::OnObstacle(one, other)),
+            (None, Some(one)) => obstacle(first).map(|other| Pair::OnObstacle(one, other)),
             (None, None) => None,
         }
     }

@@ -58,6 +58,7 @@ mod schema;
 mod selection;
 mod semantics;
 mod solid;
+mod tool;
 mod tree;
 mod viscosity;
 mod volume;
@@ -93,11 +94,13 @@ pub use scene::{Environment, Equilibrium, Integrator, Method, Output, Plane, Run
 pub use schema::{schema, schema_of};
 pub use selection::{Cap, CapExtent, LinkPattern, Linked, Selection};
 pub use solid::{Material, Neighbours, Solid, VolumeOver};
+pub use tool::{Tool, ToolSurface};
 pub use viscosity::Viscosity;
 pub use volume::{VolumeControl, VolumeRule};
 
 use crate::recorded::{
-    Motion, NAMED, OnDemand, names_by_type, series_of_moved, series_of_plates, series_of_pressures, series_of_traps,
+    Motion, NAMED, OnDemand, names_by_type, series_of_moved, series_of_plates, series_of_pressures, series_of_tool,
+    series_of_traps,
 };
 use crate::units::Time;
 use indexmap::IndexMap;
@@ -135,6 +138,9 @@ pub struct Experiment {
     /// Rigid planes that no cell passes.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub planes: Vec<Plane>,
+    /// Rigid bodies with exact surfaces that no cell passes.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub tools: Vec<Tool>,
     /// Contacts between cells; without it they pass through each other.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub contact: Option<Contact>,
@@ -153,6 +159,12 @@ pub struct Experiment {
 }
 
 impl Experiment {
+    /// The names of all that cells cannot pass: planes, then tools.
+    pub(crate) fn obstacles(&self) -> impl Iterator<Item = &str> {
+        let planes = self.planes.iter().map(|plane| plane.name.as_str());
+        planes.chain(self.tools.iter().map(|tool| tool.name.as_str()))
+    }
+
     /// What is recorded of cells that not all runs have.
     pub(crate) fn on_demand(&self) -> OnDemand {
         let fibres = self.cells.values().any(|cell| cell.fibre_budget() > 0);
@@ -160,15 +172,17 @@ impl Experiment {
         OnDemand { tractions: self.keeps_tractions(), fibres, viscosity }
     }
 
-    /// Whether tractions are recorded: where they are asked for, and where atoms are moved, whose forces are among them.
+    /// Whether tractions are recorded: where they are asked for, and where atoms are moved or there are tools, whose forces are among them.
     pub(crate) fn keeps_tractions(&self) -> bool {
-        self.output.tractions || self.cells.values().any(|cell| !cell.applied.moved.is_empty())
+        self.output.tractions
+            || !self.tools.is_empty()
+            || self.cells.values().any(|cell| !cell.applied.moved.is_empty())
     }
 
     /// Whether a series is of what is moved, of a trap or of a pressure, or may be of a load in a file.
     pub(super) fn is_of_what_is_moved(&self, series: &str) -> bool {
-        let own = [self.series_of_moved(), self.series_of_traps(), self.series_of_plates(), self.series_of_pressures()]
-            .concat();
+        let of_cells = [self.series_of_moved(), self.series_of_traps(), self.series_of_plates()].concat();
+        let own = [of_cells, self.series_of_tools(), self.series_of_pressures()].concat();
         self.may_be_of_load_file(series) || own.iter().any(|name| name == series)
     }
 
@@ -206,6 +220,12 @@ impl Experiment {
         series_of_plates(&types).into_iter().map(|(name, _)| name).collect()
     }
 
+    /// Names of the series of tools.
+    pub(super) fn series_of_tools(&self) -> Vec<String> {
+        let own = |tool: &Tool| series_of_tool(&tool.name, tool.displacement.is_some());
+        self.tools.iter().flat_map(own).map(|(name, _)| name).collect()
+    }
+
     /// Names of the series of pressures.
     pub(super) fn series_of_pressures(&self) -> Vec<String> {
         let own = |cell: &CellType| cell.applied.pressures.iter().map(|own| own.name.clone()).collect();
@@ -234,6 +254,7 @@ impl Experiment {
             chemistry: IndexMap::new(),
             environment: Environment::default(),
             planes: Vec::new(),
+            tools: Vec::new(),
             contact: None,
             output: Output::default(),
             measure: IndexMap::new(),

@@ -18,6 +18,7 @@ mod plates;
 mod pseudopods;
 mod rigid;
 mod scene;
+mod tools;
 
 pub(super) struct Check<'a> {
     document: &'a Document,
@@ -139,6 +140,7 @@ impl Check<'_> {
             experiment.series_of_moved(),
             experiment.series_of_traps(),
             experiment.series_of_plates(),
+            experiment.series_of_tools(),
             pressures,
         ]
         .concat();
@@ -213,8 +215,8 @@ impl Check<'_> {
     /// Names of the series of contacts by pair and by type.
     fn series_of_pairs(&self) -> Vec<String> {
         let types: Vec<&str> = self.document.experiment.cells.keys().map(String::as_str).collect();
-        let planes: Vec<&str> = self.document.experiment.planes.iter().map(|plane| plane.name.as_str()).collect();
-        Touch::all(types.len(), planes.len()).into_iter().map(|series| series.name(&types, &planes)).collect()
+        let obstacles: Vec<&str> = self.document.experiment.obstacles().collect();
+        Touch::all(types.len(), obstacles.len()).into_iter().map(|series| series.name(&types, &obstacles)).collect()
     }
 
     /// Whether a text is `contact.SOMETHING.NAME` or `contact.SOMETHING.NAME.NAME` and not one of the series `pairs`: a
@@ -229,7 +231,7 @@ impl Check<'_> {
         }
         let experiment = &self.document.experiment;
         let types = || experiment.cells.keys().map(String::as_str);
-        let surfaces = || types().chain(experiment.planes.iter().map(|plane| plane.name.as_str()));
+        let surfaces = || types().chain(experiment.obstacles());
         let turned = format!("contact.{stem}.{}", names.iter().rev().copied().collect::<Vec<_>>().join("."));
         let message = format!("`{path}`: there is no series \"{text}\"");
         let (message, label) = match names.iter().find(|name| !surfaces().any(|known| known == **name)) {

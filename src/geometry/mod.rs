@@ -7,6 +7,7 @@ mod export;
 mod import;
 mod lathe;
 mod measure;
+mod obstacle;
 mod occupied;
 mod orient;
 mod principal;
@@ -17,6 +18,7 @@ pub mod solid;
 mod spheres;
 mod topology;
 mod transform;
+mod turned;
 mod weld;
 
 pub use boxes::box_surface;
@@ -29,6 +31,7 @@ pub use measure::{
     area, area_vectors, atom_areas, atom_normals, bounding_box, centre_of_volume, facet_areas, facet_qualities,
     mean_edge_length, smallest_angle, volume, volume_gradient,
 };
+pub use obstacle::{Beside, Obstacle};
 pub use occupied::{Occupied, point_in_box};
 pub use orient::orient_outwards;
 pub use principal::{PrincipalAxes, principal_axes, principal_extents};
@@ -39,6 +42,7 @@ pub use solid::{Solid, SolidCell, SolidFault};
 pub use spheres::{MAX_ICOSPHERE_LEVEL, icosphere, octasphere};
 pub use topology::{Flap, Ring, Topology};
 pub use transform::{rotate, scale, translate};
+pub use turned::Turned;
 
 use crate::Vec3;
 

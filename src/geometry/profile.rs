@@ -100,9 +100,58 @@ fn fold_back([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]) -> bool {
     turn(corner) == 0.0 && along > 0.0
 }
 
+/// What the corner of a profile becomes when it is rounded.
+enum Bend {
+    /// It stays as it is.
+    Sharp([f64; 2]),
+    /// An arc of a circle that touches both sides.
+    Round(Arc),
+}
+
+/// An arc of a circle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Arc {
+    /// Middle of the circle, µm.
+    centre: [f64; 2],
+    /// Its radius, µm.
+    radius: f64,
+    /// The angle at which it begins, rad.
+    begin: f64,
+    /// How far it turns, rad, counter-clockwise.
+    angle: f64,
+    /// The direction from the middle of the circle to its own middle.
+    halfway: [f64; 2],
+    /// The cosine between that and the directions to its ends.
+    widest: f64,
+}
+
+impl Arc {
+    /// That around a point (µm), from an angle on and so far around, rad.
+    pub fn new(centre: [f64; 2], radius: f64, begin: f64, angle: f64) -> Self {
+        let (sin, cos) = (begin + 0.5 * angle).sin_cos();
+        Self { centre, radius, begin, angle, halfway: [cos, sin], widest: (0.5 * angle).cos() }
+    }
+
+    fn direction(&self, share: f64) -> [f64; 2] {
+        let (sin, cos) = (self.begin + self.angle * share).sin_cos();
+        [cos, sin]
+    }
+
+    fn point(&self, share: f64) -> [f64; 2] {
+        let [cos, sin] = self.direction(share);
+        [self.centre[0] + self.radius * cos, self.centre[1] + self.radius * sin]
+    }
+
+    /// Points in steps that turn by no more than an angle, rad, both ends among them.
+    fn points(&self, most: f64) -> impl Iterator<Item = [f64; 2]> {
+        let turns = (self.angle.abs() / most - 1e-9).ceil().max(1.0);
+        (0..=turns as u32).map(move |step| self.point(f64::from(step) / turns))
+    }
+}
+
 /// Rounds corners by arcs of circles that touch both sides. What points into a corner is sharper than it and recedes farther, so that no arc crosses
 /// a side.
-pub(super) fn round(corners: &[[f64; 2]], is_ring: bool, radius: f64) -> Result<Vec<[f64; 2]>, ProfileFault> {
+fn bends(corners: &[[f64; 2]], is_ring: bool, radius: f64) -> Result<Vec<Bend>, ProfileFault> {
     let count = corners.len();
     let is_corner = |number: usize| is_ring || (number > 0 && number < count - 1);
     // How much of both sides an arc takes.
@@ -120,12 +169,10 @@ pub(super) fn round(corners: &[[f64; 2]], is_ring: bool, radius: f64) -> Result<
     };
     let is_round = |number: usize| is_corner(number) && PI - 2.0 * half_angle(number) > STRAIGHT;
     let taken = |number: usize| if is_round(number) { radius / half_angle(number).tan() } else { 0.0 };
-    let mut points = Vec::new();
-    for number in 0..count {
+    let bend = |number: usize| {
         let at = corners[number];
         if radius == 0.0 || !is_round(number) {
-            points.push(at);
-            continue;
+            return Ok(Bend::Sharp(at));
         }
         let [(back, before), (on, after)] = sides(number);
         let most = (before / (taken(number) + taken((number + count - 1) % count)))
@@ -141,17 +188,114 @@ pub(super) fn round(corners: &[[f64; 2]], is_ring: bool, radius: f64) -> Result<
         let [first, last] = [back, on].map(|side| [at[0] + length * side[0], at[1] + length * side[1]]);
         let [begin, end] = [first, last].map(|point| (point[1] - centre[1]).atan2(point[0] - centre[0]));
         let angle = (end - begin + 3.0 * PI).rem_euclid(2.0 * PI) - PI;
-        let turns = (angle.abs() / TURN - 1e-9).ceil().max(1.0);
-        for step in 0..=turns as u32 {
-            let (sin, cos) = (begin + angle * f64::from(step) / turns).sin_cos();
-            let point = [centre[0] + radius * cos, centre[1] + radius * sin];
-            push_apart(&mut points, point, radius);
+        Ok(Bend::Round(Arc::new(centre, radius, begin, angle)))
+    };
+    (0..count).map(bend).collect()
+}
+
+/// A profile with rounded corners as points, arcs in steps.
+pub(super) fn round(corners: &[[f64; 2]], is_ring: bool, radius: f64) -> Result<Vec<[f64; 2]>, ProfileFault> {
+    let mut points = Vec::new();
+    for bend in bends(corners, is_ring, radius)? {
+        match bend {
+            Bend::Sharp(at) => points.push(at),
+            Bend::Round(arc) => arc.points(TURN).for_each(|point| push_apart(&mut points, point, radius)),
         }
     }
     if is_ring && points.len() > 1 && near(points[0], points[points.len() - 1], radius) {
         points.pop();
     }
     Ok(points)
+}
+
+/// A part of a profile whose normal is that of a side or an arc.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Piece {
+    /// A straight one, from one point to another.
+    Side([[f64; 2]; 2]),
+    /// A part of a circle.
+    Arc(Arc),
+}
+
+impl Piece {
+    /// Where it begins and ends.
+    pub fn ends(&self) -> [[f64; 2]; 2] {
+        match self {
+            Self::Side(ends) => *ends,
+            Self::Arc(arc) => [arc.point(0.0), arc.point(1.0)],
+        }
+    }
+
+    /// The unit normal to its right at one of its ends.
+    pub fn normal_at_end(&self, end: usize) -> [f64; 2] {
+        match self {
+            Self::Side([a, b]) => right_of([b[0] - a[0], b[1] - a[1]]),
+            Self::Arc(arc) => arc.direction(end as f64).map(|part| part * arc.angle.signum()),
+        }
+    }
+
+    /// How far a point is to its right, and the unit normal there, where the nearest point of its line or circle is one of its own.
+    pub fn beside(&self, p: [f64; 2]) -> Option<(f64, [f64; 2])> {
+        match self {
+            Self::Side([a, b]) => {
+                let (along, from) = ([b[0] - a[0], b[1] - a[1]], [p[0] - a[0], p[1] - a[1]]);
+                let share = (from[0] * along[0] + from[1] * along[1]) / (along[0] * along[0] + along[1] * along[1]);
+                let normal = right_of(along);
+                (0.0..=1.0).contains(&share).then(|| (from[0] * normal[0] + from[1] * normal[1], normal))
+            }
+            Self::Arc(arc) => {
+                let from = [p[0] - arc.centre[0], p[1] - arc.centre[1]];
+                let (distance, sign) = (from[0].hypot(from[1]), arc.angle.signum());
+                let along = from[0] * arc.halfway[0] + from[1] * arc.halfway[1];
+                let normal = if distance > 0.0 { from.map(|part| sign * part / distance) } else { arc.halfway };
+                (along >= arc.widest * distance).then(|| (sign * (distance - arc.radius), normal))
+            }
+        }
+    }
+
+    /// Its points but the last, arcs in steps of a part of a right angle.
+    pub fn points(&self, parts: f64) -> Vec<[f64; 2]> {
+        match self {
+            Self::Side([a, _]) => vec![*a],
+            Self::Arc(arc) => {
+                let mut points: Vec<[f64; 2]> = arc.points(0.5 * PI / parts).collect();
+                points.pop();
+                points
+            }
+        }
+    }
+}
+
+/// The unit vector to the right of a direction.
+fn right_of([r, z]: [f64; 2]) -> [f64; 2] {
+    let length = r.hypot(z);
+    [z / length, -r / length]
+}
+
+/// The pieces of a profile with rounded corners from end to end, and whether it is a ring.
+///
+/// # Errors
+/// As of [`check`] and [`round`].
+pub(super) fn outline(corners: &[[f64; 2]], radius: f64) -> Result<(Vec<Piece>, bool), ProfileFault> {
+    let is_ring = check(corners)?;
+    let bends = bends(corners, is_ring, radius)?;
+    let ends = |bend: &Bend| match bend {
+        Bend::Sharp(at) => [*at; 2],
+        Bend::Round(arc) => [arc.point(0.0), arc.point(1.0)],
+    };
+    let mut pieces = Vec::new();
+    for (number, bend) in bends.iter().enumerate() {
+        if let Bend::Round(arc) = bend {
+            pieces.push(Piece::Arc(*arc));
+        }
+        let Some(next) = bends.get(number + 1).or_else(|| bends.first().filter(|_| is_ring)) else { continue };
+        let side = [ends(bend)[1], ends(next)[0]];
+        // Two arcs that fill a side leave nothing of it.
+        if !near(side[0], side[1], radius) {
+            pieces.push(Piece::Side(side));
+        }
+    }
+    Ok((pieces, is_ring))
 }
 
 fn near(one: [f64; 2], other: [f64; 2], length: f64) -> bool {

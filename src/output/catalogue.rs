@@ -214,10 +214,12 @@ pub const CATALOGUE: &[Entry] = &[
     row("/cells/id", "1", "cell", CellInteger(|c| c.id.cast_signed()), "Id of a cell: no other cell of the run ever has it. -1 between frames."),
     row("/cells/type", "1", "cell", CellInteger(|c| i64::from(c.kind)), "Type of a cell, an index into type_names."),
     row("/cells/parent", "1", "cell", CellInteger(|c| c.parent.map_or(-1, u64::cast_signed)), "Id of the cell that a cell was born from; -1 for none."),
-    // Rigid planes, for pictures.
-    row("/planes/names", "1", "plane", OnceTexts, "Names of the rigid planes."),
-    row("/planes/point", "um", "plane, 3", OnceFloats, "A point of a plane."),
-    row("/planes/normal", "1", "plane, 3", OnceFloats, "Unit normal, towards the free side."),
+    // Rigid planes and tools, for pictures.
+    row("/planes/names", "1", "plane", OnceTexts, "Names of the rigid planes and, after them, of the tools."),
+    row("/planes/point", "um", "plane, 3", OnceFloats, "A point of a plane; the point of the axis of a tool from which heights are told, where it begins."),
+    row("/planes/normal", "1", "plane, 3", OnceFloats, "Unit normal of a plane, towards the free side, or direction of the axis of a tool."),
+    row("/planes/direction", "1", "plane, 3", OnceFloats, "Unit direction in which a tool goes, along which tool_displacement.NAME is; 0 of what stands."),
+    row("/planes/profile", "um", "point of all tools, 3", OnceFloats, "Profiles of tools, which turn about their axes: distance from the axis, height, and the tool, an index into /planes/names."),
     // What happened, and what the experiment as a whole records.
     row("/events/run_count", "1", "frame", Counter(|i| i.rows[List::Runs as usize] as i64), "Motility runs that ended up to a frame."),
     row("/events/runs/cell", "1", "run", RowInteger(List::Runs, |f, i| f.runs[i].0.cast_signed()), "Id of the cell whose motility run ended."),

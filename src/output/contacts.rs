@@ -102,7 +102,7 @@ pub fn segregation(types: &[u32], pairs: &[[u32; 2]]) -> f64 {
 /// The series of a result with contacts that follow from who touches whom, in the order of [`all_series`]; none without.
 fn touches(layout: &Layout) -> Vec<Touch> {
     match layout.contacts {
-        true => Touch::all(layout.types.len(), layout.planes.len()),
+        true => Touch::all(layout.types.len(), layout.obstacles.len()),
         false => Vec::new(),
     }
 }
@@ -122,7 +122,7 @@ pub(super) fn label(layout: &Layout, name: &str) -> Option<String> {
 
 fn names_of(layout: &Layout) -> (Vec<&str>, Vec<&str>) {
     let types = layout.types.iter().map(|kind| kind.name.as_str()).collect();
-    (types, layout.planes.iter().map(|plane| plane.0.as_str()).collect())
+    (types, layout.obstacles.iter().map(|obstacle| obstacle.name.as_str()).collect())
 }
 
 /// Names and units of those whose values follow from a frame alone; none in a result without contacts.
@@ -185,7 +185,7 @@ struct Touched {
 impl Touched {
     fn of(layout: &Layout, cells: &[Cell], surface: f64, touching: &[Touching], on_planes: &[Touching]) -> Self {
         let kinds: Vec<u32> = cells.iter().map(|cell| cell.kind).collect();
-        let (types, planes) = (layout.types.len(), layout.planes.len());
+        let (types, planes) = (layout.types.len(), layout.obstacles.len());
         let indices: HashMap<u64, u32> = (0..).zip(cells).map(|(index, cell)| (cell.id, index)).collect();
         let kind = |cell: u32| kinds[cell as usize] as usize;
         let (mut areas, mut counts) = (vec![0.0; types * types], vec![0_u32; types * types]);

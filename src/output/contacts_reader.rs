@@ -47,7 +47,7 @@ impl ResultFile {
         let number = |number: &i64| u64::try_from(*number).unwrap_or(u64::MAX);
         let ids: HashSet<u64> = self.cells(frame).iter().map(|cell| cell.id).collect();
         let is_known = |touching: &Touching| {
-            let planes = self.layout().planes.len() as u64;
+            let planes = self.layout().obstacles.len() as u64;
             let other = if list == List::Pairs { ids.contains(&touching.other) } else { touching.other < planes };
             other && ids.contains(&touching.cell)
         };

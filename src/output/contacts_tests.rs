@@ -8,7 +8,7 @@ fn layout() -> Layout {
     let kind = |name: &str| CellType { name: name.into(), atoms: 1, ..CellType::default() };
     Layout {
         types: ["red", "white"].map(kind).to_vec(),
-        planes: vec![("floor".into(), [0.0; 3], [0.0, 0.0, 1.0])],
+        obstacles: vec![Obstacle { name: "floor".into(), normal: [0.0, 0.0, 1.0], ..Obstacle::default() }],
         contacts: true,
         ..Layout::default()
     }

@@ -137,7 +137,7 @@ pub fn to_json(result: &ResultFile) -> Result<Value> {
         "fields": layout.fields.iter().map(field_json).collect::<Vec<_>>(),
         "chemistry": systems,
         "membranes": layout.membranes.iter().map(|m| json!({ "name": m.name, "unit": m.unit })).collect::<Vec<_>>(),
-        "planes": layout.planes.iter().map(|plane| &plane.0).collect::<Vec<_>>(),
+        "planes": layout.obstacles.iter().map(|obstacle| &obstacle.name).collect::<Vec<_>>(),
         "frames": result.frames(),
         "frames_within_steps": within(result)?,
         "time": { "first": times[0], "last": times[times.len() - 1], "unit": "s" },

@@ -8,7 +8,7 @@ use super::column::{Number, Plan, write_integers, write_vectors};
 use super::container::{FORMAT, FORMAT_ATTRIBUTE, set_number};
 use super::header::Header;
 use super::texts::{self, read_text, read_texts, set_text, text, write_texts};
-use super::{CellType, Layout};
+use super::{CellType, Layout, Obstacle};
 use crate::recorded::VISCOUS;
 
 impl Entry {
@@ -91,13 +91,42 @@ pub(super) fn write_layout(file: &File, layout: &Layout) -> hdf5::Result<()> {
     }
     let types: Vec<&str> = layout.types.iter().map(|kind| kind.name.as_str()).collect();
     described(&write_texts(file, "/cells/type_names", &types)?, "/cells/type_names")?;
-    let names: Vec<&str> = layout.planes.iter().map(|plane| plane.0.as_str()).collect();
+    write_obstacles(file, &layout.obstacles)
+}
+
+/// Writes what cells cannot pass.
+fn write_obstacles(file: &File, obstacles: &[Obstacle]) -> hdf5::Result<()> {
+    let names: Vec<&str> = obstacles.iter().map(|obstacle| obstacle.name.as_str()).collect();
     described(&write_texts(file, "/planes/names", &names)?, "/planes/names")?;
-    let points: Vec<[f64; 3]> = layout.planes.iter().map(|plane| plane.1).collect();
-    write_vectors(file, &entry("/planes/point").plan(Number::Float), &points)?;
-    let normals: Vec<[f64; 3]> = layout.planes.iter().map(|plane| plane.2).collect();
-    write_vectors(file, &entry("/planes/normal").plan(Number::Float), &normals)?;
+    let vectors = |path: &str, of: &dyn Fn(&Obstacle) -> Vec<[f64; 3]>| {
+        let all: Vec<[f64; 3]> = obstacles.iter().flat_map(of).collect();
+        write_vectors(file, &entry(path).plan(Number::Float), &all)
+    };
+    vectors("/planes/point", &|obstacle| vec![obstacle.point])?;
+    vectors("/planes/normal", &|obstacle| vec![obstacle.normal])?;
+    vectors("/planes/direction", &|obstacle| vec![obstacle.direction])?;
+    // The third of each is the number of the tool, by which rows are told apart.
+    let number = |obstacle: &Obstacle| obstacles.iter().position(|other| other.name == obstacle.name).unwrap_or(0);
+    vectors("/planes/profile", &|obstacle| {
+        obstacle.profile.iter().map(|[radius, height]| [*radius, *height, number(obstacle) as f64]).collect()
+    })?;
     Ok(())
+}
+
+/// Reads them.
+fn read_obstacles(file: &File) -> hdf5::Result<Vec<Obstacle>> {
+    let names = read_texts(file, "/planes/names")?;
+    let (points, normals) = (vectors(file, "/planes/point")?, vectors(file, "/planes/normal")?);
+    // Files of earlier versions have none.
+    let later = |path: &str| if file.link_exists(path) { vectors(file, path) } else { Ok(Vec::new()) };
+    let (profiles, directions) = (later("/planes/profile")?, later("/planes/direction")?);
+    let each = names.into_iter().zip(points.into_iter().zip(normals)).enumerate();
+    let obstacle = |(number, (name, (point, normal))): (usize, (String, ([f64; 3], [f64; 3])))| {
+        let own = profiles.iter().filter(|row| row[2] == number as f64);
+        let direction = directions.get(number).copied().unwrap_or_default();
+        Obstacle { name, point, normal, direction, profile: own.map(|row| [row[0], row[1]]).collect() }
+    };
+    Ok(each.map(obstacle).collect())
 }
 
 /// The numbers of a dataset of the types of cells; none for what VTK wants and nobody fills.
@@ -117,12 +146,10 @@ fn of_types(path: &str, layout: &Layout) -> Vec<i64> {
 
 /// Reads the layout.
 pub(super) fn read_layout(file: &File) -> hdf5::Result<Layout> {
-    let names = read_texts(file, "/planes/names")?;
-    let (points, normals) = (vectors(file, "/planes/point")?, vectors(file, "/planes/normal")?);
     Ok(Layout {
         types: read_types(file)?,
         scene_series: read_scene_names(file)?,
-        planes: names.into_iter().zip(points.into_iter().zip(normals)).map(|(name, (p, n))| (name, p, n)).collect(),
+        obstacles: read_obstacles(file)?,
         fields: super::fields::read_layouts(file)?,
         systems: super::systems::read_layouts(file)?,
         membranes: super::membranes::read_layouts(file)?,

@@ -87,8 +87,8 @@ pub struct Layout {
     pub types: Vec<CellType>,
     /// Names of the scene series (one number per frame), e.g. `load.pull`, with their units.
     pub scene_series: Vec<(String, String)>,
-    /// Rigid planes: name, a point (µm), the unit normal that points to the free side.
-    pub planes: Vec<(String, [f64; 3], [f64; 3])>,
+    /// What cells cannot pass: planes, then tools.
+    pub obstacles: Vec<Obstacle>,
     /// The grids of fields.
     pub fields: Vec<FieldLayout>,
     /// The systems of chemistry inside cells, and those of the scene.
@@ -110,6 +110,21 @@ impl Layout {
     pub fn on_demand(&self) -> OnDemand {
         OnDemand { tractions: self.tractions, fibres: self.fibres, viscosity: self.viscosity }
     }
+}
+
+/// A rigid plane or tool.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Obstacle {
+    /// Its name.
+    pub name: String,
+    /// A point of the plane, µm; of a tool that of its axis from which heights are told, where it begins.
+    pub point: [f64; 3],
+    /// The unit normal of the plane, which points to the free side, or the direction of the axis of the tool.
+    pub normal: [f64; 3],
+    /// The unit direction in which the tool goes, along which the series `tool_displacement.NAME` is; 0 of what stands.
+    pub direction: [f64; 3],
+    /// The profile that makes the tool as it is turned about its axis, each point a distance from the axis and a height, µm; none of a plane.
+    pub profile: Vec<[f64; 2]>,
 }
 
 /// Forces between atoms and what is around them, in the mean over the last step, pN, atom after atom.

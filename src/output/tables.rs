@@ -128,7 +128,7 @@ fn contacts(result: &ResultFile) -> Result<String> {
             text.push_str(&format!("{frame},{time},{cell},{},{other},{},{area}\n", kind(cell), kind(other)));
         }
         for Touching { cell, other, area } in result.on_planes(frame)? {
-            let plane = layout.planes.get(other as usize).map_or("", |plane| plane.0.as_str());
+            let plane = layout.obstacles.get(other as usize).map_or("", |obstacle| obstacle.name.as_str());
             text.push_str(&format!("{frame},{time},{cell},{},,{},{area}\n", kind(cell), field(plane)));
         }
     }

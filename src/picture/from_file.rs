@@ -11,9 +11,10 @@ use super::instant::frame_at;
 use super::quantities::AtomQuantity;
 use super::render::Sheet;
 use super::{Image, plots};
+use crate::Vec3;
 use crate::error::{Error, Fault, Result};
 use crate::experiment::{Document, Picture};
-use crate::output::{Cell, FibreRow, ResultFile};
+use crate::output::{Cell, FibreRow, Obstacle, ResultFile};
 
 /// What one frame gives to a picture.
 struct Shot {
@@ -25,6 +26,8 @@ struct Shot {
     fibres: Option<Vec<([[f64; 3]; 2], f64)>>,
     field: Option<Sheet>,
     time: f64,
+    /// How far obstacles have gone, µm.
+    gone: Vec<Vec3>,
 }
 
 /// What colours show.
@@ -133,7 +136,19 @@ impl<'a> Stage<'a> {
         let field = self.field.as_ref().map(|field| field.sheet(self.result, frame, &positions)).transpose()?;
         let arrows = self.arrows.at(time, self.result.layout(), &cells, &positions);
         let fibres = self.fibres.then(|| self.fibres_at(frame, &cells, &positions)).transpose()?;
-        Ok(Shot { cells, positions, values, arrows, fibres, field, time })
+        let gone = self.result.layout().obstacles.iter().map(|obstacle| self.gone(obstacle, frame));
+        let gone = gone.collect::<Result<_>>()?;
+        Ok(Shot { cells, positions, values, arrows, fibres, field, time, gone })
+    }
+
+    /// How far an obstacle has gone, µm.
+    fn gone(&self, obstacle: &Obstacle, frame: usize) -> Result<Vec3> {
+        let direction = Vec3::from(obstacle.direction);
+        if direction == Vec3::zeros() {
+            return Ok(direction);
+        }
+        let displacement = self.result.scene_series(&format!("tool_displacement.{}", obstacle.name))?;
+        Ok(displacement.get(frame).copied().unwrap_or(0.0) * direction)
     }
 
     /// The ends and tensions of the fibres of a frame.
@@ -156,7 +171,7 @@ impl<'a> Stage<'a> {
         let layout = self.result.layout();
         let (cells, positions, arrows, field) = (&shot.cells, &shot.positions, &shot.arrows, shot.field.as_ref());
         let fibres = shot.fibres.as_deref();
-        Snapshot { layout, cells, positions, time: shot.time, values, arrows, fibres, field }
+        Snapshot { layout, cells, positions, time: shot.time, values, arrows, fibres, field, gone: &shot.gone }
     }
 
     fn draw(&self, shot: &Shot, framing: &Framing, picture: &Picture) -> Image {

@@ -12,8 +12,9 @@ use super::render::{
     SurfaceColour, basis, draw, time_text,
 };
 use super::ticks::nice_above;
+use super::tools::add_tool;
 use crate::Vec3;
-use crate::output::{Cell, CellType, Layout};
+use crate::output::{Cell, CellType, Layout, Obstacle};
 
 /// The colour of fibres: a dark red, as stained actomyosin is often shown.
 const FIBRE: Colour = Colour([0xa8, 0x1d, 0x2d]);
@@ -37,6 +38,8 @@ pub struct Snapshot<'a> {
     pub fibres: Option<&'a [DrawnFibre]>,
     /// A field under or between the cells; the look says its colours.
     pub field: Option<&'a Sheet>,
+    /// How far obstacles have gone, µm, in the order of the layout; those behind the last have not.
+    pub gone: &'a [Vec3],
 }
 
 /// The ends of a fibre (µm) and what it pulls with (pN).
@@ -330,6 +333,9 @@ pub fn scene_of(snapshot: &Snapshot, look: &Look, framing: &Framing) -> Scene {
     for [tail, tip] in snapshot.arrows {
         scene.add_arrow(*tail, *tip, 0.011 * typical, dark);
     }
+    for (number, tool) in layout.obstacles.iter().enumerate().filter(|(_, obstacle)| !obstacle.profile.is_empty()) {
+        add_tool(&mut scene, tool, snapshot.gone.get(number).copied().unwrap_or_else(Vec3::zeros));
+    }
     if let Some(bounds) = framing.bounds.or_else(|| Bounds::around(positions)) {
         add_planes(&mut scene, layout, &bounds, typical);
         let before = |cut: f64| Vec3::from(bounds.centre()) + cut * framing.axes[2];
@@ -349,15 +355,14 @@ fn is_closed(facets: &[[u32; 3]]) -> bool {
 
 /// The plane that looks up most becomes the floor, the others panes around the cells.
 fn add_planes(scene: &mut Scene, layout: &Layout, bounds: &Bounds, typical: f64) {
-    let up = |plane: &(String, [f64; 3], [f64; 3])| Vec3::from(plane.2).try_normalize(1e-300).map_or(0.0, |n| n.z);
-    let floor = (0..layout.planes.len())
-        .filter(|k| up(&layout.planes[*k]) > 0.7)
-        .max_by(|a, b| up(&layout.planes[*a]).total_cmp(&up(&layout.planes[*b])).then(b.cmp(a)));
+    let up = |plane: &Obstacle| Vec3::from(plane.normal).try_normalize(1e-300).map_or(0.0, |n| n.z);
+    let planes = || layout.obstacles.iter().filter(|obstacle| obstacle.profile.is_empty());
+    let floor = planes().filter(|plane| up(plane) > 0.7).max_by(|a, b| up(a).total_cmp(&up(b)));
     let centre = Vec3::from(bounds.centre());
-    for (number, (_, point, normal)) in layout.planes.iter().enumerate() {
-        let Some(n) = Vec3::from(*normal).try_normalize(1e-300) else { continue };
-        let below = centre - n * (centre - Vec3::from(*point)).dot(&n);
-        if floor == Some(number) {
+    for plane in planes() {
+        let Some(n) = Vec3::from(plane.normal).try_normalize(1e-300) else { continue };
+        let below = centre - n * (centre - Vec3::from(plane.point)).dot(&n);
+        if floor.is_some_and(|floor| std::ptr::eq(floor, plane)) {
             // Grid lines lie at whole multiples of their distance, so that they can be read as a ruler.
             let grid = nice_above(0.8 * typical);
             let snapped = below - Vec3::new(below.x % (5.0 * grid), below.y % (5.0 * grid), 0.0);
@@ -402,8 +407,13 @@ mod tests {
             layout.types.push(CellType { name: name.into(), atoms, facets, links: Vec::new() });
             positions.extend(cell.positions);
         }
-        layout.planes =
-            vec![("ground".into(), [0.0; 3], [0.0, 0.0, 1.0]), ("lid".into(), [0.0, 0.0, 10.0], [0.0, 0.0, -1.0])];
+        let plane = |name: &str, height: f64, up: f64| Obstacle {
+            name: name.into(),
+            point: [0.0, 0.0, height],
+            normal: [0.0, 0.0, up],
+            ..Obstacle::default()
+        };
+        layout.obstacles = vec![plane("ground", 0.0, 1.0), plane("lid", 10.0, -1.0)];
         (layout, positions)
     }
 
@@ -419,6 +429,7 @@ mod tests {
             arrows: &[],
             fibres: None,
             field: None,
+            gone: &[],
         };
         let look = Look::default();
         let mut framing = Framing::new(&look);
@@ -451,6 +462,7 @@ mod tests {
                 arrows: &[],
                 fibres: None,
                 field: None,
+                gone: &[],
             };
             // A picture of one frame alone: the others have not been seen.
             let mut framing = Framing::new(&look).lasting(600.0);
@@ -475,6 +487,7 @@ mod tests {
             arrows: &[],
             fibres: None,
             field: None,
+            gone: &[],
         };
         let (mut one, mut both) = (Framing::new(&look), Framing::new(&look));
         one.include(&still(&positions));
@@ -506,6 +519,7 @@ mod tests {
             arrows: &[],
             fibres: None,
             field: None,
+            gone: &[],
         };
         let mut framing = Framing::new(&look);
         (0..20).for_each(|k| framing.include(&snapshot(k)));

@@ -20,6 +20,7 @@ pub mod render;
 mod svg;
 pub(crate) mod text;
 pub mod ticks;
+mod tools;
 pub mod track_plots;
 
 pub use chart::{Axis, Chart, Heat, Range, Scale, Series, Shading, save_chart, save_stacked};

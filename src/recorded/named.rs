@@ -4,7 +4,7 @@
 pub const OUT_OF_BALANCE: &str = "out_of_balance";
 
 /// What the series of things with names begin with, and what a chart calls them: `load.NAME` and its like.
-pub const NAMED: [(&str, &str); 11] = [
+pub const NAMED: [(&str, &str); 16] = [
     ("load", "load"),
     ("pressure", "pressure"),
     ("displacement", "displacement"),
@@ -16,6 +16,11 @@ pub const NAMED: [(&str, &str); 11] = [
     ("trap_z", "force along z of trap"),
     ("plate_force", "force of plate"),
     ("plate_displacement", "displacement of plate"),
+    ("tool_x", "force along x on tool"),
+    ("tool_y", "force along y on tool"),
+    ("tool_z", "force along z on tool"),
+    ("tool_reach", "reach of cells past tool"),
+    ("tool_displacement", "displacement of tool"),
 ];
 
 /// The names of what types have, in their order: NAME, or TYPE.NAME where several types have one of this name. Of each type its name and the
@@ -55,6 +60,14 @@ pub fn series_of_moved(types: &[(&str, Vec<Motion>)]) -> Vec<(String, &'static s
 pub fn series_of_traps(types: &[(&str, Vec<String>)]) -> Vec<String> {
     let series = |name: String| ["x", "y", "z"].map(|axis| format!("trap_{axis}.{name}"));
     names_by_type(types).into_iter().flat_map(series).collect()
+}
+
+/// Names and units of the series of a tool: the force of the cells on it, `tool_x.NAME`, `tool_y.NAME` and `tool_z.NAME`, how far they reach along
+/// its axis past its point, `tool_reach.NAME`, and how far it has gone where it goes, `tool_displacement.NAME`.
+pub fn series_of_tool(name: &str, goes: bool) -> Vec<(String, &'static str)> {
+    let forces = [("tool_x", "pN"), ("tool_y", "pN"), ("tool_z", "pN"), ("tool_reach", "um")];
+    let going = [("tool_displacement", "um")].into_iter().filter(|_| goes);
+    forces.into_iter().chain(going).map(|(word, unit)| (format!("{word}.{name}"), unit)).collect()
 }
 
 /// Names and units of the series of flexible plates: `plate_force.NAME` and `plate_displacement.NAME`. Of each type its name and the names of its

@@ -8,7 +8,7 @@ use crate::Vec3;
 /// `outer + held + drag − traction − of_cells − inertia` is nothing, eq. (traction.1): what a cell does to itself has no sum.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct AtomBalance {
-    /// Force on the planes that the cell touches.
+    /// Force on the obstacles that the cell touches.
     pub traction: [f64; 3],
     /// Force on other cells.
     pub of_cells: [f64; 3],

@@ -1,4 +1,4 @@
-//! The stage that makes constraints exact after the atoms moved: planes, the shapes of virtual adhesives, and the volume of
+//! The stage that makes constraints exact after the atoms moved: obstacles, the shapes of virtual adhesives, and the volume of
 //! every cell, which comes last. Rigid bodies get back their shape.
 
 use rayon::prelude::*;
@@ -19,7 +19,7 @@ pub const VOLUME_TOLERANCE: f64 = 1e-10;
 /// Turns of exact volumes and shapes of adhesives in a step; each leaves a small part of what the one before left.
 const TURNS: usize = 4;
 
-/// Makes planes and volumes exact, in turns with the shapes of virtual adhesives where there are any; volumes come last.
+/// Makes obstacles and volumes exact, in turns with the shapes of virtual adhesives where there are any; volumes come last.
 ///
 /// # Errors
 /// A volume that could not be restored; `time` is the end of the step, s.
@@ -33,7 +33,7 @@ pub fn make_exact(model: &Model, time: f64, from: &State, to: &mut State, ws: &m
     enforce_constraints(model, time, to, ws)
 }
 
-/// Puts atoms back outside the planes, every exact volume back on its target, and rigid bodies back to their shape.
+/// Puts atoms back outside the obstacles, every exact volume back on its target, and rigid bodies back to their shape.
 ///
 /// # Errors
 /// As [`make_exact`].
@@ -41,11 +41,11 @@ pub fn enforce_constraints(model: &Model, time: f64, to: &mut State, ws: &mut Wo
     let Workspace { kinds, buffers, .. } = ws;
     for ((kind, now), w) in model.kinds.iter().zip(&mut to.kinds).zip(kinds) {
         if kind.rigid.is_some() {
-            now.positions.par_chunks_exact_mut(kind.block_len()).for_each(|x| make_rigid(model, kind, x));
+            now.positions.par_chunks_exact_mut(kind.block_len()).for_each(|x| make_rigid(model, kind, time, x));
             continue;
         }
         let exact = matches!(kind.volume, VolumeRule::Exact(_));
-        if !exact && model.planes.is_empty() {
+        if !exact && model.obstacles.is_empty() {
             continue;
         }
         let (length, lanes) = (kind.block_len(), kind.lanes);
@@ -53,15 +53,15 @@ pub fn enforce_constraints(model: &Model, time: f64, to: &mut State, ws: &mut Wo
         (now.positions.par_chunks_exact_mut(length))
             .zip(target.par_chunks_exact(lanes).zip(left.par_chunks_exact_mut(lanes)).zip(project))
             .for_each(|(x, ((target, left), scratch))| {
-                if !model.planes.is_empty() {
-                    project_block(model, kind, exact, x, target, left, scratch);
+                if !model.obstacles.is_empty() {
+                    project_block((model, kind, time), exact, x, target, left, scratch);
                 } else {
                     buffers.enter(length, |[spare, spare2, ..]| {
                         volume::enforce_block(&kind.rest.facets, x, &kind.held, target, spare, spare2, left);
                     });
                     left.iter_mut().zip(target).for_each(|(left, target)| *left /= target);
                     if left.iter().any(|error| error.is_nan() || *error > VOLUME_TOLERANCE) {
-                        project_block(model, kind, exact, x, target, left, scratch);
+                        project_block((model, kind, time), exact, x, target, left, scratch);
                     }
                 }
             });
@@ -75,8 +75,7 @@ pub fn enforce_constraints(model: &Model, time: f64, to: &mut State, ws: &mut Wo
 
 /// Cell by cell, by alternating projections.
 fn project_block(
-    model: &Model,
-    kind: &super::kind::Kind,
+    (model, kind, time): (&Model, &super::kind::Kind, f64),
     exact: bool,
     x: &mut [f64],
     target: &[f64],
@@ -88,7 +87,7 @@ fn project_block(
     for lane in 0..lanes {
         alone.clear();
         alone.extend(x.chunks_exact(lanes).map(|row| row[lane]));
-        left[lane] = project_cell(model, kind, &mut alone, exact.then_some(target[lane]), scratch);
+        left[lane] = project_cell(model, kind, time, &mut alone, exact.then_some(target[lane]), scratch);
         for (row, value) in x.chunks_exact_mut(lanes).zip(&alone) {
             row[lane] = *value;
         }

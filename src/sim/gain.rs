@@ -45,7 +45,7 @@ pub fn has_gained(model: &Model, dt: f64, before: Option<f64>, from: &State, to:
 
 fn is_left_alone(model: &Model, state: &State) -> bool {
     let sticks_only = |contact: &super::contact::ContactModel| {
-        let strengths = contact.between.iter().chain(&contact.on_planes);
+        let strengths = contact.between.iter().chain(&contact.on_obstacles);
         contact.law.is_passive() && strengths.into_iter().all(|strength| strength.energy == 0.0)
     };
     // A step never runs over a bend of a course. What a program sets of loads may be anything.

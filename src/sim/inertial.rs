@@ -124,7 +124,7 @@ fn runge_kutta(model: &Model, dt: f64, from: &State, to: &mut State, ws: &mut Wo
 /// Corrects the velocities, where atoms have some, by what the constraints moved, eq. (step.7).
 pub fn correct_velocities(model: &Model, dt: f64, to: &mut State, ws: &Workspace) {
     for ((kind, now), w) in model.kinds.iter().zip(&mut to.kinds).zip(&ws.kinds) {
-        let constrained = !model.planes.is_empty() || matches!(kind.volume, VolumeRule::Exact(_));
+        let constrained = !model.obstacles.is_empty() || matches!(kind.volume, VolumeRule::Exact(_));
         if constrained {
             for ((v, x), free) in now.velocities.iter_mut().zip(&now.positions).zip(&w.free) {
                 *v += (x - free) / dt;

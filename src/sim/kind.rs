@@ -1,5 +1,6 @@
 //! The cells that share a mesh and a material.
 
+use super::obstacle::Obstacle;
 use crate::cell::Behaviour;
 use crate::geometry::{self, Surface, Topology};
 use crate::mechanics::Force;
@@ -26,6 +27,8 @@ pub struct Kind {
     pub rest: Surface,
     /// What fills it; nothing fills a surface.
     pub tetrahedra: Vec<[u32; 4]>,
+    /// The edges of the surface.
+    pub edges: Vec<[u32; 2]>,
     /// Whether the surface encloses a volume.
     pub closed: bool,
     /// All forces on its atoms but those of motility, contacts and the rule of its volume, in the order in which they are added up.
@@ -103,11 +106,13 @@ impl Kind {
     /// One cell of a mesh and the forces on it, without motility: drag and mass of an atom 1, exact volume where the mesh is
     /// closed. The stiffness is that of the elastic forces as they are; see [`Kind::bound_stiffness`].
     pub fn new(name: &str, rest: Surface, forces: Vec<Force>) -> Self {
-        let closed = !rest.facets.is_empty() && Topology::of(&rest).is_closed();
+        let topology = Topology::of(&rest);
+        let closed = !rest.facets.is_empty() && topology.is_closed();
         let stiffness = stiffness(&forces, &rest.positions, &rest.positions);
         Self {
             name: name.to_owned(),
             tetrahedra: forces.iter().find_map(solid).map_or(Vec::new(), |solid| solid.tetrahedra().collect()),
+            edges: topology.edges,
             closed,
             largest_stiffness: stiffness.largest(),
             stiffness,
@@ -287,14 +292,16 @@ fn solid(force: &Force) -> Option<&Solid> {
     }
 }
 
-/// All times after the start at which a course of some kind bends, rising.
-pub fn kinks(kinds: &[Kind]) -> Vec<f64> {
+/// All times after the start at which a course of some kind or obstacle bends, rising.
+pub fn kinks(kinds: &[Kind], obstacles: &[Obstacle]) -> Vec<f64> {
     let of_kind = |kind: &Kind| -> Vec<f64> {
         let volume = kind.volume.course().into_iter().flat_map(Course::kinks);
         let moved = kind.moved.iter().flat_map(Moved::courses).flat_map(Course::kinks);
         kind.forces.iter().flat_map(Force::kinks).chain(volume).chain(moved).collect()
     };
-    let mut kinks: Vec<f64> = kinds.iter().flat_map(of_kind).filter(|kink| *kink > 0.0).collect();
+    let going = obstacles.iter().filter_map(|obstacle| obstacle.going.as_ref());
+    let of_obstacles = going.flat_map(|going| going.displacement.kinks());
+    let mut kinks: Vec<f64> = kinds.iter().flat_map(of_kind).chain(of_obstacles).filter(|kink| *kink > 0.0).collect();
     kinks.sort_by(f64::total_cmp);
     kinks.dedup();
     kinks

@@ -1,9 +1,9 @@
-//! What an experiment means: kinds of cells, forces and planes in µm, s and pN. Nothing here changes during a run.
+//! What an experiment means: kinds of cells, forces and obstacles in µm, s and pN. Nothing here changes during a run.
 
 use super::chemistry::Chemistry;
 use super::contact::ContactModel;
 use super::kind::{Kind, kinks};
-use super::plane::Plane;
+use super::obstacle::Obstacle;
 use crate::Vec3;
 use crate::mechanics::integrator::Integrator;
 
@@ -14,9 +14,9 @@ pub struct Model {
     pub seed: u64,
     /// The kinds of cells, in the order of the document.
     pub kinds: Vec<Kind>,
-    /// Rigid planes that no atom passes.
-    pub planes: Vec<Plane>,
-    /// Contacts between cells, with themselves and with planes; none where cells pass through each other.
+    /// Rigid obstacles that no atom passes.
+    pub obstacles: Vec<Obstacle>,
+    /// Contacts between cells, with themselves and with obstacles; none where cells pass through each other.
     pub contact: Option<ContactModel>,
     /// Systems of equations, fields, and what joins them to cells.
     pub chemistry: Chemistry,
@@ -68,13 +68,13 @@ pub enum Removal {
 }
 
 impl Model {
-    /// A model of these kinds alone: no planes, contacts or chemistry.
+    /// A model of these kinds alone: no obstacles, contacts or chemistry.
     pub fn of(kinds: Vec<Kind>, integrator: Integrator, until: f64) -> Self {
         Self {
             seed: 1,
-            kinks: kinks(&kinds),
+            kinks: kinks(&kinds, &[]),
             kinds,
-            planes: Vec::new(),
+            obstacles: Vec::new(),
             contact: None,
             chemistry: Chemistry::default(),
             integrator,

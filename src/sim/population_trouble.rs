@@ -40,12 +40,12 @@ pub enum PopulationTrouble {
         /// How deep, µm.
         depth: f64,
     },
-    /// A cell that comes is behind a plane, deeper than contacts can mend.
-    BehindPlane {
+    /// A cell that comes is behind an obstacle, deeper than contacts can mend.
+    BehindObstacle {
         /// Kind of the cell and the id that it would have got.
         cell: (String, u64),
-        /// Name of the plane.
-        plane: String,
+        /// Name of the obstacle.
+        obstacle: String,
         /// How deep, µm.
         depth: f64,
     },
@@ -85,11 +85,14 @@ impl std::fmt::Display for PopulationTrouble {
                     f,
                     "there is no space for all cells that come to type `{kind}`: {found} of {wanted} found a point "
                 )?;
-                write!(f, "where they touch no other cell and no plane; make their box larger, or them fewer")
+                write!(f, "where they touch no other cell and no obstacle; make their box larger, or them fewer")
             }
-            Self::BehindPlane { cell: (kind, id), plane, depth } => {
-                write!(f, "a cell to be added is behind a plane: cell {id} of type `{kind}` would be {depth:.1e} um ")?;
-                write!(f, "behind the plane `{plane}`; place it before it")
+            Self::BehindObstacle { cell: (kind, id), obstacle, depth } => {
+                write!(
+                    f,
+                    "a cell to be added is behind an obstacle: cell {id} of type `{kind}` would be {depth:.1e} um "
+                )?;
+                write!(f, "behind the obstacle `{obstacle}`; place it before it")
             }
         }
     }

@@ -5,19 +5,20 @@ use nalgebra::Matrix3;
 use super::kind::Kind;
 use super::model::Model;
 use crate::Vec3;
+use crate::geometry::Beside;
 
-/// Times that a body is lifted onto the planes one after the other.
+/// Times that a body is lifted onto the obstacles one after the other.
 const ROUNDS: usize = 8;
 
 /// Iterations within which a singular value decomposition of nine numbers comes to an end, unless one of them is none.
 const DECOMPOSED: usize = 100;
 
-/// Puts the bodies of a block to where the mesh at rest fits their atoms best, and out of the planes as a whole.
-pub fn make_rigid(model: &Model, kind: &Kind, x: &mut [f64]) {
+/// Puts the bodies of a block to where the mesh at rest fits their atoms best, and out of the obstacles as a whole.
+pub fn make_rigid(model: &Model, kind: &Kind, time: f64, x: &mut [f64]) {
     for lane in 0..kind.lanes {
         let mut body = Body { x, lanes: kind.lanes, lane };
         body.fit(&kind.rest.positions, kind.may_turn());
-        body.lift(model);
+        body.lift(model, time);
     }
 }
 
@@ -52,15 +53,17 @@ impl Body<'_> {
         rest.iter().enumerate().for_each(|(atom, rest)| self.put(atom, to + turn * (rest - from)));
     }
 
-    /// Moves it along the normals of the planes that it is in.
-    fn lift(&mut self, model: &Model) {
+    /// Moves it along the normals of the obstacles that it is in.
+    fn lift(&mut self, model: &Model, time: f64) {
         for _ in 0..ROUNDS {
             let mut lifted = false;
-            for plane in &model.planes {
-                let height = |atom: usize| (self.at(atom) - plane.point).dot(&plane.normal);
-                let deepest = (0..self.atoms()).map(height).fold(0.0, f64::min);
-                if deepest < 0.0 {
-                    (0..self.atoms()).for_each(|atom| self.put(atom, self.at(atom) - deepest * plane.normal));
+            for obstacle in &model.obstacles {
+                let beside = (0..self.atoms()).map(|atom| obstacle.beside(time, &self.at(atom)));
+                let none = Beside { gap: 0.0, normal: Vec3::zeros() };
+                let deepest = beside.fold(none, |deepest, one| if one.gap < deepest.gap { one } else { deepest });
+                if deepest.gap < 0.0 {
+                    let back = deepest.gap * deepest.normal;
+                    (0..self.atoms()).for_each(|atom| self.put(atom, self.at(atom) - back));
                     lifted = true;
                 }
             }

@@ -2,7 +2,7 @@
 
 use super::kind::Kind;
 use super::model::Model;
-use super::plane::Plane;
+use super::obstacle::Obstacle;
 use super::population_trouble::PopulationTrouble;
 use super::state::State;
 use crate::Vec3;
@@ -12,7 +12,7 @@ use crate::random::{Purpose, Stream};
 /// Points tried for a cell before a box counts as full.
 pub const TRIES: u32 = 10_000;
 
-/// A cell may stand on a plane: how far below it round-off may put it, over its radius.
+/// A cell may stand on an obstacle: how far below it round-off may put it, over its radius.
 const ROUND_OFF: f64 = 1e-9;
 
 /// Radius of the sphere around a cell at rest, µm.
@@ -21,21 +21,22 @@ pub fn radius_around(kind: &Kind) -> f64 {
 }
 
 /// Takes a free point for a cell of a kind in a box: points are drawn until the sphere around the cell keeps the gap from all that is taken and no
-/// atom is behind a plane. Returns its centre, µm; none when the box is too full.
+/// atom is behind an obstacle. Returns its centre, µm; none when the box is too full.
 pub fn take_point(
     kind: &Kind,
-    planes: &[Plane],
+    obstacles: &[Obstacle],
     [low, high]: [Vec3; 2],
     stream: &mut Stream,
     taken: &mut Occupied,
 ) -> Option<Vec3> {
     let radius = radius_around(kind);
-    let height = |plane: &Plane, centre: &Vec3| {
-        let atoms = kind.rest.positions.iter().map(|p| p.dot(&plane.normal));
-        (centre - plane.point).dot(&plane.normal) + atoms.fold(f64::INFINITY, f64::min)
+    let height = |obstacle: &Obstacle, centre: &Vec3| {
+        let atoms = kind.rest.positions.iter().map(|p| obstacle.surface.gap(&(centre + p)));
+        atoms.fold(f64::INFINITY, f64::min)
     };
     let is_free = |centre: &Vec3| {
-        taken.is_clear(*centre, radius) && planes.iter().all(|plane| height(plane, centre) >= -ROUND_OFF * radius)
+        taken.is_clear(*centre, radius)
+            && obstacles.iter().all(|obstacle| height(obstacle, centre) >= -ROUND_OFF * radius)
     };
     let centre = (0..TRIES).map(|_| point_in_box(stream, low, high)).find(is_free)?;
     taken.add_sphere(centre, radius);
@@ -69,8 +70,10 @@ pub(super) fn seed(
             taken.add_box(low, high);
         }
     }
-    let found: Option<Vec<Vec3>> =
-        streams.by_ref().map(|mut stream| take_point(kind, &model.planes, corners, &mut stream, &mut taken)).collect();
+    let found: Option<Vec<Vec3>> = streams
+        .by_ref()
+        .map(|mut stream| take_point(kind, &model.obstacles, corners, &mut stream, &mut taken))
+        .collect();
     found.ok_or_else(|| PopulationTrouble::NoSpace {
         kind: kind.name.clone(),
         found: taken.spheres().len(),

@@ -11,12 +11,12 @@ use crate::mechanics::lanes::LANES;
 const LEFT: f64 = 0.1;
 
 impl Step<'_> {
-    /// Whether what is out of balance at the end of a step is known before contacts and planes hold the body: planes push within the stages, and
+    /// Whether what is out of balance at the end of a step is known before contacts and obstacles hold the body: obstacles push within the stages, and
     /// the matrix of what is viscous is that of the shape where the step begins.
     pub(super) fn settles(&self, block: &Block) -> bool {
         let kind = self.kind;
         let is_filled = !kind.tetrahedra.is_empty() && kind.tangent.is_some() && kind.viscosity.is_none();
-        is_filled && block.second.is_none() && self.model.planes.is_empty()
+        is_filled && block.second.is_none() && self.model.obstacles.is_empty()
     }
 
     /// Lets a block settle, and returns the error of the step, µm: that of the scheme as it is filtered, and a tenth of what was left of stiff

@@ -4,7 +4,7 @@ use super::forces::Forces;
 use super::kind::{Kind, VolumeRule};
 use super::model::Model;
 use super::moved::Displacements;
-use super::planes::{self, TouchScratch};
+use super::obstacles::{self, TouchScratch};
 use super::pressure::{add_pressure_on_held, carry_pressure, constrain};
 use super::scheme::{gamma, root_mean_square, share_of_stage};
 use super::solver::{Solver, Stage, System, solve_block, solve_turning};
@@ -62,7 +62,7 @@ pub struct Block<'a> {
     pub swelling: Option<(&'a mut [f64], &'a mut [f64])>,
     /// Where the increments of the second stage are kept then.
     pub second: Option<&'a mut [f64]>,
-    /// Contact with planes.
+    /// Contact with obstacles.
     pub touch: &'a mut TouchScratch,
 }
 
@@ -237,8 +237,9 @@ impl Step<'_> {
         }
         let gamma = gamma(kind, order);
         constrain(kind, gamma, gradient, swell, &wanted[..kind.lanes], target, y, pressure);
-        let scene = planes::Scene { model, kind, system: *system, stage, gamma, share: share_of_stage(order) };
-        planes::correct_block(&scene, start, first, gradient, swell, target, y, pressure, touch);
+        let (share, end) = (share_of_stage(order), self.start + self.dt);
+        let scene = obstacles::Scene { model, kind, system: *system, stage, end, gamma, share };
+        obstacles::correct_block(&scene, start, first, gradient, swell, target, y, pressure, touch);
         if let Some(displacements) = &self.displacements {
             displacements.set_increments(stage, start, y);
         }

@@ -1,4 +1,4 @@
-//! The stages that keep what cells did to planes, to each other and to the medium over a step, atom by atom, eq. (traction.1): as the
+//! The stages that keep what cells did to obstacles, to each other and to the medium over a step, atom by atom, eq. (traction.1): as the
 //! attempt that stands has found it, so that over a cell all forces from outside add up to nothing.
 
 use rayon::prelude::*;
@@ -48,7 +48,7 @@ pub fn keep_tractions(model: &Model, dt: f64, from: &State, to: &mut State, ws: 
         let mut balance = std::mem::take(&mut to.balance);
         let atoms = from.atoms(kind);
         let made = Made { kind, dt, method: model.integrator.method, from, to, w };
-        let contacts = (&noted.on_planes[atoms.clone()], &noted.on_cells[atoms]);
+        let contacts = (&noted.on_obstacles[atoms.clone()], &noted.on_cells[atoms]);
         let cells = balance.par_chunks_mut(kind.atoms()).enumerate().with_min_len(CELLS_PER_JOB);
         cells.for_each(|(cell, own)| {
             for (atom, slot) in own.iter_mut().enumerate() {
@@ -72,7 +72,7 @@ struct Made<'a> {
 }
 
 impl Made<'_> {
-    fn of_atom(&self, cell: usize, atom: usize, (on_planes, on_cells): (Vec3, Vec3)) -> AtomBalance {
+    fn of_atom(&self, cell: usize, atom: usize, (on_obstacles, on_cells): (Vec3, Vec3)) -> AtomBalance {
         let &Self { kind, dt, method, from, to, w } = self;
         let vector = |values: &[f64]| Vec3::from_fn(|axis, _| values[index(kind, cell, atom, axis)]);
         let of_block = |values: &[f64]| {
@@ -93,7 +93,7 @@ impl Made<'_> {
             true => kind.mass * (vector(&to.velocities) - vector(&from.velocities)) / dt,
             false => Vec3::zeros(),
         };
-        let (traction, drag) = (on_planes - reaction, -kind.drag * velocity);
+        let (traction, drag) = (on_obstacles - reaction, -kind.drag * velocity);
         // What holds an atom, or moves it on a course, bears all that acts on it.
         let held = match w.on_held.is_empty() {
             true => Vec3::zeros(),

@@ -193,7 +193,7 @@ impl std::fmt::Display for Trouble {
             }
             Self::Pressed { cells: [one, other], time, depth } if one == other => {
                 write!(f, "cell {} of type `{}` is at least {depth:.1e} um deep in itself ", one.1, one.0)?;
-                write!(f, "or behind a plane at t = {time:.6} s, more than contacts can mend")
+                write!(f, "or behind an obstacle at t = {time:.6} s, more than contacts can mend")
             }
             Self::Pressed { cells: [(kind, cell), other], time, depth } => {
                 write!(f, "cell {cell} of type `{kind}` and cell {} of type `{}` are ", other.1, other.0)?;

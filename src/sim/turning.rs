@@ -15,7 +15,7 @@ pub struct Turning {
 
 impl Turning {
     /// That of the cells of a block at `x`, µm, whose loads are those of a time, s; `mobility` is step over drag, µm/pN, and `gamma` that of the
-    /// scheme. Without loads, and where contacts or planes find out by themselves how cells give way, they turn as if nothing held them.
+    /// scheme. Without loads, and where contacts or obstacles find out by themselves how cells give way, they turn as if nothing held them.
     pub fn of(
         model: &Model,
         (forces, block): (&Forces, usize),
@@ -25,7 +25,7 @@ impl Turning {
     ) -> Self {
         let kind = forces.kind;
         let mut turning = Self { rows: [0.0; 9 * LANES], lanes: 0 };
-        let may_turn = model.contact.is_none() && model.planes.is_empty() && kind.may_turn();
+        let may_turn = model.contact.is_none() && model.obstacles.is_empty() && kind.may_turn();
         if !may_turn || kind.loads().next().is_none() {
             return turning;
         }

@@ -13,7 +13,7 @@ use crate::Vec3;
 use crate::elementary::go_back;
 
 /// The state at a time (s) within the step that was made last and led to `to`. What moves or changes steadily lies on the line between the
-/// ends of the step, volumes are exact, and no atom is behind a plane. Cells that nothing stops are where their walk has led them by then, and
+/// ends of the step, volumes are exact, and no atom is behind an obstacle. Cells that nothing stops are where their walk has led them by then, and
 /// systems without noise are solved until then. What is set between steps is as in the step, and what jumps (fibres, adhesives, bonds) as the
 /// step left it. Runs and pseudopods that had ended by then are moved from `to` into it.
 ///
@@ -51,7 +51,7 @@ fn put_on_courses(model: &Model, from: &State, within: &mut State) {
 }
 
 /// Moves cells from the line between the ends of the step to where their walks have led them: where nothing is in their way they go by what
-/// these ask for, whatever else they do. What may be in the way keeps them on their lines: other cells, planes, across these, and mass.
+/// these ask for, whatever else they do. What may be in the way keeps them on their lines: other cells, obstacles, across these, and mass.
 fn follow_walks(model: &Model, (from, end): (&State, f64), within: &mut State, ws: &mut Workspace) {
     let (passed, whole) = (within.time - from.time, end - from.time);
     if model.contact.is_some() || model.integrator.method.is_inertial() {
@@ -69,7 +69,10 @@ fn follow_walks(model: &Model, (from, end): (&State, f64), within: &mut State, w
         }
         for (local, cell) in begun.numbers().enumerate() {
             let off = Vec3::from_fn(|axis, _| part[cell][axis] - share * all[cell][axis]);
-            let along = model.planes.iter().fold(off, |off, plane| off - off.dot(&plane.normal) * plane.normal);
+            let along = model.obstacles.iter().fold(off, |off, obstacle| match obstacle.surface.as_plane() {
+                Some(normal) => off - off.dot(&normal) * normal,
+                None => Vec3::zeros(),
+            });
             now.shift(kind, local, &along);
         }
     }

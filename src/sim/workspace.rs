@@ -8,7 +8,7 @@ use super::contact::ContactScratch;
 use super::coupled_scratch::Coupled;
 use super::kind::Kind;
 use super::model::Model;
-use super::planes::TouchScratch;
+use super::obstacles::TouchScratch;
 use super::projection::ProjectScratch;
 use super::solver::Solver;
 use super::state::State;
@@ -75,7 +75,7 @@ pub struct KindScratch {
     pub own_factors: Vec<f64>,
     /// What couples the cells to others by forces that the step answers; empty where none are so steep.
     pub coupled: Coupled,
-    /// One entry a block: contact with planes.
+    /// One entry a block: contact with obstacles.
     pub touch: Vec<TouchScratch>,
     /// One entry a block: the thorough projection.
     pub project: Vec<ProjectScratch>,

@@ -10,7 +10,7 @@ use crate::sim::{AtomBalance, Model, State};
 /// Writes what the atoms of all cells did in the last step, and the sums over each cell; nothing before the first step.
 pub fn record_tractions(model: &Model, state: &State, frame: &mut Frame) {
     let mut all = Tractions::default();
-    let up = model.planes.first().map(|plane| plane.normal);
+    let up = model.obstacles.first().and_then(|obstacle| obstacle.surface.as_plane());
     let mut first_cell = 0;
     for (kind, now) in model.kinds.iter().zip(&state.kinds) {
         for cell in 0..now.cells() {

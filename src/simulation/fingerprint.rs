@@ -32,10 +32,21 @@ impl Write for Fnv {
 
 /// The fingerprint of a model: of all that decides the course of a state, and of nothing that follows from the rest.
 pub fn fingerprint(model: &Model) -> u64 {
-    let Model { seed, kinds, planes, contact, chemistry, integrator, until, rest, kinks: _, changes, keeps_tractions } =
-        model;
+    let Model {
+        seed,
+        kinds,
+        obstacles,
+        contact,
+        chemistry,
+        integrator,
+        until,
+        rest,
+        kinks: _,
+        changes,
+        keeps_tractions,
+    } = model;
     let mut hash = Fnv(FNV_START);
-    hash.value(&(seed, integrator, until, rest, planes, changes, keeps_tractions));
+    hash.value(&(seed, integrator, until, rest, obstacles, changes, keeps_tractions));
     kinds.iter().for_each(|kind| add_kind(&mut hash, kind));
     if let Some(contact) = contact {
         add_contact(&mut hash, contact);
@@ -57,8 +68,8 @@ fn add_kind(hash: &mut Fnv, kind: &Kind) {
 }
 
 fn add_contact(hash: &mut Fnv, contact: &ContactModel) {
-    let ContactModel { reach, law, between, on_planes, tolerance, most_sweeps, .. } = contact;
-    hash.value(&(reach, law, between, on_planes, tolerance, most_sweeps));
+    let ContactModel { reach, law, between, on_obstacles, tolerance, most_sweeps, .. } = contact;
+    hash.value(&(reach, law, between, on_obstacles, tolerance, most_sweeps));
 }
 
 fn add_chemistry(hash: &mut Fnv, chemistry: &Chemistry) {

@@ -79,7 +79,7 @@ fn numbered(model: &Model, state: &State) -> Numbered {
         atoms: state.atoms(model),
         facets: all(&|kind| model.kinds[kind].rest.facets.len()),
         edges: if state.contact.edges.is_empty() { 0 } else { all(&edges_of) },
-        planes: model.planes.len(),
+        obstacles: model.obstacles.len(),
     }
 }
 

@@ -45,6 +45,7 @@ mod record;
 mod series;
 mod snapshot;
 mod stepping;
+mod tools;
 mod touch;
 
 pub use crate::output::{SeriesInfo, SeriesScope};

@@ -2,8 +2,10 @@
 
 use super::balance::record_tractions;
 use super::moved;
+use super::tools;
 use super::touch::Touch;
 use crate::cell::pseudopods::EndedPseudopod;
+use crate::geometry;
 use crate::output::{
     Cell, CellRecord, CellType, FibreRow, FieldLayout, Frame, Layout, MembraneLayout, PseudopodEvent, SystemLayout,
     SystemScope,
@@ -14,7 +16,7 @@ use crate::sim::contact::find_contacts;
 use crate::sim::kind::Kind;
 use crate::sim::observe::{mean_velocities, measure_cells};
 use crate::sim::state::vector;
-use crate::sim::{KindState, Model, State, Workspace, forces};
+use crate::sim::{KindState, Model, Obstacle, State, Workspace, forces};
 
 /// Types of cells, names and planes of a model, as the result file lists them.
 pub fn layout_of(model: &Model) -> Layout {
@@ -34,6 +36,7 @@ pub fn outline_of(model: &Model) -> Layout {
         moved::names(model),
         moved::names_of_traps(model),
         moved::names_of_plates(model),
+        tools::names(model),
         moved::names_of_pressures(model),
     ];
     layout.scene_series = loads.chain(named.into_iter().flatten()).collect();
@@ -44,8 +47,20 @@ pub fn outline_of(model: &Model) -> Layout {
     layout.viscosity = model.kinds.iter().any(|kind| kind.viscosity.is_some());
     let of_contacts = model.contact.iter().flat_map(|contact| contact_quantities(contact.law.series()));
     layout.scene_series.extend(of_contacts.map(|row| (row.name.to_owned(), row.unit.to_owned())));
-    let plane = |plane: &crate::sim::Plane| (plane.name.clone(), plane.point.into(), plane.normal.into());
-    layout.planes = model.planes.iter().map(plane).collect();
+    let obstacle = |obstacle: &Obstacle| {
+        let (point, normal) = match &obstacle.surface {
+            geometry::Obstacle::Plane { point, normal } => (*point, *normal),
+            geometry::Obstacle::Turned(body) => (body.point, body.axis),
+        };
+        let profile = match &obstacle.surface {
+            geometry::Obstacle::Plane { .. } => Vec::new(),
+            geometry::Obstacle::Turned(body) => body.profile(),
+        };
+        let direction = obstacle.going.as_ref().map_or([0.0; 3], |going| going.direction.into());
+        let (name, point, normal) = (obstacle.name.clone(), point.into(), normal.into());
+        crate::output::Obstacle { name, point, normal, direction, profile }
+    };
+    layout.obstacles = model.obstacles.iter().map(obstacle).collect();
     add_chemistry(model, &mut layout);
     layout
 }
@@ -202,6 +217,7 @@ impl Recorder {
         moved::record(model, state, &mut frame.scene);
         moved::record_traps(model, state, &mut frame.scene);
         moved::record_plates(model, state, &mut frame.scene);
+        tools::record(model, state, &mut frame.scene);
         moved::record_pressures(model, state, &mut frame.scene);
         frame.scene.extend(model.rest.map(|_| state.out_of_balance.unwrap_or(f64::NAN)));
         if let Some(contact) = &model.contact {

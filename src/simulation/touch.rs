@@ -99,7 +99,7 @@ impl Touch {
             ContactSeries::Deepest => return (-self.found.smallest_gap()).max(0.0) / edge,
             ContactSeries::Energy => return state.contact.stored() + self.energy,
             ContactSeries::Bonds => return self.bonds,
-            ContactSeries::Count => self.found.atoms.len() + self.found.edges.len() + self.found.planes.len(),
+            ContactSeries::Count => self.found.atoms.len() + self.found.edges.len() + self.found.obstacles.len(),
             ContactSeries::Aggregates => aggregates.number,
             ContactSeries::LargestAggregate => aggregates.largest,
             ContactSeries::Links => self.links.links.len(),
@@ -115,7 +115,7 @@ impl Touch {
         self.partners.clear();
         let others = self.found.atoms.iter().filter(|near| scene.body_of_atom(near.atom) != near.body(scene));
         self.partners.extend(others.map(|near| (near.atom, near.body(scene))));
-        self.partners.extend(self.found.planes.iter().map(|near| (near.atom, bodies + near.plane)));
+        self.partners.extend(self.found.obstacles.iter().map(|near| (near.atom, bodies + near.obstacle)));
         self.partners.sort_unstable();
         self.partners.dedup();
     }

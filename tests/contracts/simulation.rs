@@ -6,7 +6,7 @@ use pseudopod::cell::BehaviourState;
 use pseudopod::experiment::Document;
 use pseudopod::output::ResultFile;
 use pseudopod::run::{Quiet, ResumeOptions, RunOptions, run};
-use pseudopod::sim::contact::PlaneBond;
+use pseudopod::sim::contact::ObstacleBond;
 use pseudopod::sim::{AtomBalance, State};
 use pseudopod::simulation::{Builder, CellId, CheckpointFault, EXAMPLE, NewCell, PopulationTrouble, SeriesScope};
 use pseudopod::{CancelToken, Simulation, SimulationError};
@@ -474,7 +474,7 @@ fn faults_of_a_document_keep_their_positions() {
 #[test]
 fn a_state_that_names_what_is_not_there_is_refused() {
     // As it may come from a file with good checksums.
-    let bond = PlaneBond { atom: 0, plane: 0, force: [0.0; 3], stored: 0.0 };
+    let bond = ObstacleBond { atom: 0, obstacle: 0, force: [0.0; 3], stored: 0.0 };
     type Spoil<'a> = &'a dyn Fn(&mut State);
     let late = |state: &mut State, late: f64| {
         let all = state.kinds.iter_mut().flat_map(|kind| kind.behaviours.iter_mut().flatten());
@@ -499,7 +499,7 @@ fn a_state_that_names_what_is_not_there_is_refused() {
         ("what the cells of type", &|state| late(state, f64::NAN)),
         ("its time is NaN s", &|state| state.time = f64::NAN),
         ("its time is -0.5 s", &|state| state.time = -0.5),
-        ("its contacts are", &|state| state.contact.planes.push(PlaneBond { plane: u32::MAX, ..bond })),
+        ("its contacts are", &|state| state.contact.obstacles.push(ObstacleBond { obstacle: u32::MAX, ..bond })),
         ("its contacts are", &|state| state.contact.released.push(1_000_000)),
         ("the cells of type", &|state| state.kinds[0].balance.push(AtomBalance::NONE)),
     ];

@@ -8,7 +8,7 @@ use pseudopod::mechanics::Force;
 use pseudopod::mechanics::course::Course;
 use pseudopod::mechanics::integrator::StepSize;
 use pseudopod::sim::chemistry::{Control, Members, Target};
-use pseudopod::sim::{Model, Plane, State, Trouble, Workspace, begin_chemistry, step};
+use pseudopod::sim::{Model, Obstacle, State, Trouble, Workspace, begin_chemistry, step};
 
 fn bytes(state: &State) -> Vec<u8> {
     postcard::to_stdvec(state).unwrap()
@@ -43,7 +43,7 @@ fn scene(fixed: Option<&str>) -> (Model, State, Workspace) {
     let ball = &mut state.kinds[1];
     ball.stiffness_shape = ball.positions.iter().map(|x| 0.5 * x).collect();
     assert!(
-        !state.contact.atoms.is_empty() && !state.contact.planes.is_empty(),
+        !state.contact.atoms.is_empty() && !state.contact.obstacles.is_empty(),
         "cells touch each other and the floor"
     );
     assert!(state.contact.atoms.iter().any(|bond| bond.force != [0.0; 3]), "contacts carry forces");
@@ -112,9 +112,8 @@ fn a_stage_of_mechanics_that_fails_leaves_every_byte() {
     let (model, state, mut ws) = scene(Some("0.05 s"));
     // Exact volumes: cells between two planes that leave them none. A fixed step is not made shorter for that.
     let mut pressed = model.clone();
-    let plane =
-        |height: f64, up: f64| Plane { name: "press".to_owned(), point: Vec3::z() * height, normal: Vec3::z() * up };
-    pressed.planes = vec![plane(3.0, 1.0), plane(3.001, -1.0)];
+    let plane = |height: f64, up: f64| Obstacle::plane("press", Vec3::z() * height, Vec3::z() * up);
+    pressed.obstacles = vec![plane(3.0, 1.0), plane(3.001, -1.0)];
     fails("volumes", &pressed, &state, &mut ws, |trouble| matches!(trouble, Trouble::Volume { .. }));
     // Atoms that go farther than contacts allow.
     let mut fast = model.clone();

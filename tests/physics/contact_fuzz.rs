@@ -210,7 +210,10 @@ fn fill(scene: &Scene, model: &Model, cells: &[CellMeasure]) -> f64 {
     if scene.purpose != Purposed::Overfull {
         return 0.0;
     }
-    let widths = model.planes.chunks(2).map(|pair| (pair[0].point - pair[1].point).norm());
+    let widths = model.obstacles.chunks(2).map(|pair| {
+        let centre = Vec3::zeros();
+        pair[0].beside(0.0, &centre).gap + pair[1].beside(0.0, &centre).gap
+    });
     cells.iter().map(|cell| cell.volume).sum::<f64>() / widths.product::<f64>()
 }
 
@@ -224,7 +227,7 @@ fn check_depth(model: &Model, state: &State, ws: &Workspace, seen: &mut Seen) ->
         let [one, other] = near.bodies(scene);
         (near.gap, one, other)
     });
-    let of_planes = found.planes.iter().map(|near| (near.gap, body_of(near.atom), body_of(near.atom)));
+    let of_planes = found.obstacles.iter().map(|near| (near.gap, body_of(near.atom), body_of(near.atom)));
     for (gap, one, other) in of_atoms.chain(of_edges).chain(of_planes) {
         let depth = -gap / edge(one).min(edge(other));
         seen.deepest = seen.deepest.max(depth);
@@ -261,9 +264,9 @@ fn check_strength(scene: &Scene, model: &Model, state: &State, ws: &Workspace, s
     // Of edges only those are kept that carry a force.
     let edges = s.rows.iter().filter(|row| row.pairing == Pairing::Edges).count();
     let of_edges = std::iter::repeat_n(([0.0; 2], 0.0), edges);
-    let of_planes = bonds.planes.iter().map(|bond| {
+    let of_planes = bonds.obstacles.iter().map(|bond| {
         let kind = kind_of(body_of(bond.atom));
-        (scene.on_planes[kind][bond.plane as usize], area_of(bond.atom))
+        (scene.on_planes[kind][bond.obstacle as usize], area_of(bond.atom))
     });
     let largest = s.pulls.iter().map(|pull| pull.force().norm()).fold(0.0, f64::max);
     let mut sum = ((0, 0), 0.0);

@@ -42,6 +42,7 @@ mod solids;
 mod sphere;
 mod stability_limits;
 mod step;
+mod tools;
 mod tractions;
 mod virtual_adhesives;
 mod viscosity;

@@ -100,7 +100,7 @@ fn what_cannot_come_or_go_is_refused_and_leaves_every_byte() {
     let twice = refused(0, &[good.clone(), good.clone()]);
     assert!(matches!(twice, PopulationTrouble::Overlap { .. }), "two that come at the same place: {twice}");
     let below = refused(1, &[at(&model, 1, [60.0, 0.0, 0.0])]);
-    assert!(matches!(&below, PopulationTrouble::BehindPlane { cell: (_, 4), .. }), "{below}");
+    assert!(matches!(&below, PopulationTrouble::BehindObstacle { cell: (_, 4), .. }), "{below}");
     assert_eq!(refused(7, std::slice::from_ref(&good)), PopulationTrouble::NoSuchKind { kind: 7, kinds: 2 });
     let orphan = NewCell { parent: Some(4), ..good.clone() };
     assert_eq!(refused(0, &[orphan]), PopulationTrouble::NoSuchCell { id: 4 });
@@ -147,7 +147,7 @@ fn contacts_of_the_cells_that_stay_go_on() {
     };
     // Each bond by the ids of its cells, with what it carries.
     let bonds = |state: &State| -> Vec<((u64, u32), [f32; 3])> {
-        let planes = state.contact.planes.iter().map(|bond| (name(state, bond.atom), bond.force));
+        let planes = state.contact.obstacles.iter().map(|bond| (name(state, bond.atom), bond.force));
         state.contact.atoms.iter().map(|bond| (name(state, bond.atom), bond.force)).chain(planes).collect()
     };
     let scene = |state: &State| model.contact.as_ref().unwrap().scene_of(&state.kinds).scene;

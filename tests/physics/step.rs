@@ -10,7 +10,7 @@ use pseudopod::mechanics::integrator::{Integrator, Method, Order, StepSize};
 use pseudopod::mechanics::load::Load;
 use pseudopod::mechanics::membrane::{Membrane, MembraneLaw};
 use pseudopod::mechanics::shape_memory::{Reaction, ShapeMemory};
-use pseudopod::sim::{Kind, Model, Plane, State, VolumeRule, Workspace, step};
+use pseudopod::sim::{Kind, Model, Obstacle, State, VolumeRule, Workspace, step};
 
 fn sphere_kind(level: u32, stiffness: f64) -> Kind {
     let surface = icosphere(5.0, level);
@@ -207,7 +207,7 @@ fn a_cell_on_a_plane_rests_in_balance_whatever_the_step() {
         kind.forces.push(Force::Gravity(Gravity { acceleration: -Vec3::z() }));
         let mut model = model_of(kind, SECOND, size, 400.0);
         let normal = Vec3::z();
-        model.planes = vec![Plane { name: "ground".into(), point: Vec3::zeros(), normal }];
+        model.obstacles = vec![Obstacle::plane("ground", Vec3::zeros(), normal)];
         let positions = model.kinds[0].rest.positions.iter().map(|p| p + Vec3::new(0.0, 0.0, 5.0)).collect();
         let (mut state, mut ws) = start(&model, vec![positions]);
         let steps = run_until_end(&model, &mut state, &mut ws);

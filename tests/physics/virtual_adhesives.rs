@@ -13,7 +13,7 @@ use pseudopod::mechanics::load::Load;
 use pseudopod::mechanics::shape_memory::{Reaction, ShapeMemory};
 use pseudopod::sim::contact::{AdhesiveTable, ContactModel, Law, Zones};
 use pseudopod::sim::observe::measure_cells;
-use pseudopod::sim::{Kind, Model, Plane, State, Workspace, step};
+use pseudopod::sim::{Kind, Model, Obstacle, State, Workspace, step};
 
 /// Drag of an atom, pN s/µm.
 const DRAG: f64 = 0.5;
@@ -139,11 +139,11 @@ fn a_plane_holds_what_is_glued_to_it_below_kappa_and_lets_go_above_as_chemistry_
         let force: f64 = over * kappa * DRAG / dt;
         pull(&mut lone, Vec3::z(), &[(0.0, force), (4.0, force)]);
         let mut model = model(vec![lone], IMPLICIT, dt, 2.0, 0.0);
-        model.planes = vec![Plane { name: "floor".into(), point: Vec3::zeros(), normal: Vec3::z() }];
+        model.obstacles = vec![Obstacle::plane("floor", Vec3::zeros(), Vec3::z())];
         let near = 0.1 * model.kinds[0].edge;
         let reach = Reach { proximity: near, depth: near, margin: near };
-        let mut contact = ContactModel::new(&model.kinds, &model.planes, reach).suited_to(model.integrator.size);
-        let table = AdhesiveTable { between: vec![0.0], on_planes: vec![kappa], zones: Zones::Merged };
+        let mut contact = ContactModel::new(&model.kinds, &model.obstacles, reach).suited_to(model.integrator.size);
+        let table = AdhesiveTable { between: vec![0.0], on_obstacles: vec![kappa], zones: Zones::Merged };
         contact.law = Law::VirtualAdhesives(table);
         model.contact = Some(contact);
         let mut state = state(&model, &[0.02 * Vec3::z()]);
@@ -274,7 +274,7 @@ fn an_adhesive_that_bridges_two_makes_them_one_unless_zones_are_kept_by_pair() {
         pull(&mut middle, -Vec3::z(), &[(0.0, 0.5), (2.0, 0.5)]);
         let mut model = model(vec![low, high(), high(), middle], IMPLICIT, 0.02, 1.0, 1.0);
         let contact = model.contact.as_mut().unwrap();
-        contact.law = Law::VirtualAdhesives(AdhesiveTable { between: vec![1.0; 16], on_planes: Vec::new(), zones });
+        contact.law = Law::VirtualAdhesives(AdhesiveTable { between: vec![1.0; 16], on_obstacles: Vec::new(), zones });
         let at = |x: f64, height: f64| Vec3::new(x, 0.0, height);
         let mut state = state(&model, &[at(0.0, 0.0), at(-4.0, 0.02), at(4.0, 0.02), at(0.0, 0.4)]);
         let mut numbers = Vec::new();

@@ -38,7 +38,7 @@ fn layout() -> Layout {
     let named = |name: &str, unit: &str| (name.to_string(), unit.to_string());
     Layout {
         types: vec![kind("walker"), kind("rester")],
-        planes: vec![("ground".into(), [0.0; 3], [0.0, 0.0, 1.0])],
+        obstacles: vec![Obstacle { name: "ground".into(), normal: [0.0, 0.0, 1.0], ..Obstacle::default() }],
         fields: vec![
             FieldLayout {
                 name: "attractant".into(),

@@ -19,7 +19,12 @@ pub fn layout() -> Layout {
     Layout {
         types: vec![kind("round"), kind("lone")],
         scene_series: vec![("wall.height".into(), "um".into()), ("load.pull".into(), "pN".into())],
-        planes: vec![("floor".into(), [0.0, 0.0, -2.0], [0.0, 0.0, 1.0])],
+        obstacles: vec![Obstacle {
+            name: "floor".into(),
+            point: [0.0, 0.0, -2.0],
+            normal: [0.0, 0.0, 1.0],
+            ..Obstacle::default()
+        }],
         contacts: true,
         ..Layout::default()
     }

@@ -21,7 +21,7 @@ use pseudopod::mechanics::stability::{Body, largest_stable_step};
 use pseudopod::mechanics::sum;
 use pseudopod::random::{Purpose, Stream};
 use pseudopod::sim::contact::{ContactModel, Strength};
-use pseudopod::sim::{Kind, Model, Plane, State, VolumeRule};
+use pseudopod::sim::{Kind, Model, Obstacle, State, VolumeRule};
 
 /// What a scene is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -310,13 +310,12 @@ impl Scene {
             .map(|cells| cells.iter().map(|atoms| atoms.iter().map(|x| turn * x).collect()).collect())
             .collect();
         let sides = [Vec3::z(), -Vec3::z(), Vec3::x(), -Vec3::x(), Vec3::y(), -Vec3::y()];
-        let planes: Vec<Plane> = sides[..self.planes]
+        let planes: Vec<Obstacle> = sides[..self.planes]
             .iter()
             .enumerate()
-            .map(|(number, normal)| Plane {
-                name: format!("plane {number}"),
-                point: turn * normal * -(half + self.spare),
-                normal: turn * normal,
+            .map(|(number, normal)| {
+                let (point, name) = (turn * normal * -(half + self.spare), format!("plane {number}"));
+                Obstacle::plane(&name, point, turn * normal)
             })
             .collect();
         if self.weight > 0.0 {

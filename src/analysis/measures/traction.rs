@@ -100,7 +100,12 @@ impl Traction {
     fn of_frame(&self, file: &ResultFile, frame: usize, kinds: &[u32]) -> Result<f64> {
         let (positions, cells) = (file.positions(frame)?, file.cells(frame));
         let Some(forces) = file.tractions(frame)? else { return Ok(f64::NAN) };
-        let up = file.layout().planes.first().map(|(_, _, normal)| Vec3::from(*normal));
+        let up = file
+            .layout()
+            .obstacles
+            .first()
+            .filter(|first| first.profile.is_empty())
+            .map(|plane| Vec3::from(plane.normal));
         let of_cells = cells.iter().zip(file.layout().atoms_of(&cells));
         let values = of_cells.filter(|(cell, _)| kinds.contains(&cell.kind)).map(|(_, atoms)| match self.statistic {
             TractionStatistic::Balance => left_over(&forces, atoms),

@@ -8,7 +8,7 @@ use crate::error::{Error, Fault, Result, short};
 use crate::sim::contact::{
     AREA_WITHIN, AdhesiveTable, CohesionTable, Cohesive, ContactModel, Law, LinkTable, Penalty, Strength, Zones,
 };
-use crate::sim::{Kind, Plane};
+use crate::sim::{Kind, Obstacle};
 use crate::units::{LineStiffness, Stress, SurfaceDrag};
 
 /// The proximity over the smallest mean edge where the user names none.
@@ -78,7 +78,7 @@ pub fn check_ranges(document: &Document, kinds: &[Kind]) -> Result<()> {
     let pairs = text.between.iter().enumerate().map(|(index, between)| {
         let kinds = match between.pair(&document.experiment) {
             Some(Pair::Types(one, other)) => vec![one, other],
-            Some(Pair::OnPlane(kind, _)) => vec![kind],
+            Some(Pair::OnObstacle(kind, _)) => vec![kind],
             None => Vec::new(),
         };
         (format!("contact.between[{index}]"), (between.strength, between.energy, between.range), kinds)
@@ -148,16 +148,16 @@ fn range_fault(document: &Document, told: &Told, (range, kind): (f64, &Kind), to
 const PENALTY_DEPTH: f64 = 0.5;
 
 /// Contacts with the strengths of the document.
-pub fn contact(experiment: &Experiment, kinds: &[Kind], planes: &[Plane], reach: Reach) -> Option<ContactModel> {
+pub fn contact(experiment: &Experiment, kinds: &[Kind], obstacles: &[Obstacle], reach: Reach) -> Option<ContactModel> {
     let text = experiment.contact.as_ref()?;
-    let mut model = ContactModel::new(kinds, planes, reach);
+    let mut model = ContactModel::new(kinds, obstacles, reach);
     let edges: Vec<f64> = kinds.iter().map(|kind| kind.edge).collect();
     let widest = RANGES.end() * edges.iter().copied().fold(f64::INFINITY, f64::min);
     let within = text.area_within.map_or(AREA_WITHIN.min(widest), |within| within.value());
-    model.area = CohesionTable::alike(&edges, planes.len(), within);
+    model.area = CohesionTable::alike(&edges, obstacles.len(), within);
     match text.model {
         Text::Adhesives => {}
-        Text::Cohesion => model.law = Law::Cohesion(CohesionTable::new(kinds.len(), planes.len())),
+        Text::Cohesion => model.law = Law::Cohesion(CohesionTable::new(kinds.len(), obstacles.len())),
         Text::Links => {
             model.law = Law::Links(links(experiment, kinds));
             return Some(model);
@@ -167,7 +167,7 @@ pub fn contact(experiment: &Experiment, kinds: &[Kind], planes: &[Plane], reach:
             model.law = Law::Penalty(Penalty { stiffness, range: reach.proximity });
         }
         Text::VirtualAdhesives => {
-            model.law = Law::VirtualAdhesives(adhesives(experiment, kinds.len(), planes.len()));
+            model.law = Law::VirtualAdhesives(adhesives(experiment, kinds.len(), obstacles.len()));
             return Some(model);
         }
     }
@@ -192,7 +192,8 @@ pub fn contact(experiment: &Experiment, kinds: &[Kind], planes: &[Plane], reach:
     }
     if let Law::Cohesion(table) = &mut model.law {
         table.resolve(&edges);
-        table.resists = table.has_friction() || model.between.iter().chain(&model.on_planes).any(|it| it.shear > 0.0);
+        table.resists =
+            table.has_friction() || model.between.iter().chain(&model.on_obstacles).any(|it| it.shear > 0.0);
     }
     Some(model)
 }
@@ -211,7 +212,7 @@ fn stick(
             let cohesive = Cohesive { strength: strength.tensile, work: strength.energy, friction, bonds };
             match pair {
                 Pair::Types(one, other) => table.stick(one, other, cohesive),
-                Pair::OnPlane(kind, plane) => table.stick_to_plane(kind, plane, cohesive),
+                Pair::OnObstacle(kind, obstacle) => table.stick_to_obstacle(kind, obstacle, cohesive),
             }
             Strength { tensile: 0.0, energy: 0.0, ..strength }
         }
@@ -219,7 +220,7 @@ fn stick(
     };
     match pair {
         Pair::Types(one, other) => model.stick(one, other, strength),
-        Pair::OnPlane(kind, plane) => model.stick_to_plane(kind, plane, strength),
+        Pair::OnObstacle(kind, obstacle) => model.stick_to_obstacle(kind, obstacle, strength),
     }
 }
 
@@ -230,14 +231,15 @@ fn strength_of([strength, energy]: [f64; 2], (shear, friction): (Option<Stress>,
 }
 
 /// Which types are glued to each other and to planes, and how well. As with strengths, cells stick to planes that are named only.
-fn adhesives(experiment: &Experiment, kinds: usize, planes: usize) -> AdhesiveTable {
+fn adhesives(experiment: &Experiment, kinds: usize, obstacles: usize) -> AdhesiveTable {
     let text = experiment.contact.as_ref();
     let all = text.and_then(|text| text.kappa).map_or(0.0, |kappa| kappa.value());
     let zones = match text.and_then(|text| text.zones).unwrap_or_default() {
         ZonesText::Merged => Zones::Merged,
         ZonesText::Pairs => Zones::Pairs,
     };
-    let mut table = AdhesiveTable { between: vec![all; kinds * kinds], on_planes: vec![0.0; kinds * planes], zones };
+    let mut table =
+        AdhesiveTable { between: vec![all; kinds * kinds], on_obstacles: vec![0.0; kinds * obstacles], zones };
     for between in text.map_or(&[][..], |text| &text.between) {
         let kappa = between.kappa.map_or(0.0, |kappa| kappa.value());
         match between.pair(experiment) {
@@ -245,7 +247,7 @@ fn adhesives(experiment: &Experiment, kinds: usize, planes: usize) -> AdhesiveTa
                 table.between[one * kinds + other] = kappa;
                 table.between[other * kinds + one] = kappa;
             }
-            Some(Pair::OnPlane(kind, plane)) => table.on_planes[kind * planes + plane] = kappa,
+            Some(Pair::OnObstacle(kind, obstacle)) => table.on_obstacles[kind * obstacles + obstacle] = kappa,
             None => {}
         }
     }

@@ -13,6 +13,7 @@ mod mesh;
 mod model;
 mod notices;
 mod numbers;
+mod obstacles;
 mod overlap;
 mod population;
 mod positions;
@@ -32,7 +33,7 @@ pub use schedule::Schedule;
 pub use size::Size;
 pub use start::{PushedApart, Settling, settle_start, settle_start_told};
 
-use super::{CellType, Document, Experiment, Solid, VolumeRule as Rule};
+use super::{CellType, Document, Solid, VolumeRule as Rule};
 use crate::Vec3;
 use crate::error::{Error, Fault, Result};
 use crate::field::Fields;
@@ -41,7 +42,7 @@ use crate::mechanics::Force;
 use crate::mechanics::course::Course;
 use crate::sim::chemistry::ChemistryState;
 use crate::sim::kind::kinks;
-use crate::sim::{Kind, Model, Plane, State, VolumeRule};
+use crate::sim::{Kind, Model, State, VolumeRule};
 use builder::Built;
 use numbers::vector;
 
@@ -124,11 +125,11 @@ pub fn prepare(document: &Document) -> Result<Prepared> {
     if !faults.is_empty() {
         return Err(Error::Input(faults));
     }
-    let (reach, planes) = (contact::reach(document, &kinds)?, planes(experiment));
+    let (reach, obstacles) = (contact::reach(document, &kinds)?, obstacles::obstacles(document)?);
     contact::check_ranges(document, &kinds)?;
     contact::check_area_within(document, &kinds)?;
     let centres = match reach {
-        Some(reach) => spacing::centres_apart(document, &kinds, &planes, reach.proximity)?,
+        Some(reach) => spacing::centres_apart(document, &kinds, &obstacles, reach.proximity)?,
         None => {
             let cells = experiment.cells.values().zip(&kinds).zip(positions::first_cells(experiment));
             cells.map(|((cell, kind), first)| positions::centres(experiment, cell, kind, first)).collect()
@@ -136,12 +137,12 @@ pub fn prepare(document: &Document) -> Result<Prepared> {
     };
     anchor_plates(&mut kinds, &centres);
     let integrator = steps::integrator(document, &mut kinds)?;
-    let contact = reach.and_then(|reach| contact::contact(experiment, &kinds, &planes, reach));
+    let contact = reach.and_then(|reach| contact::contact(experiment, &kinds, &obstacles, reach));
     if contact.as_ref().is_none_or(|contact| contact.law.moves_as_steps()) {
         let have_tools = contact.is_some() && kinds.iter().any(|kind| kind.rigid.is_some() || !kind.moved.is_empty());
         for kind in &mut kinds {
             // What grips a cell touches it, too.
-            kind.use_tangent(have_tools || !kind.moved.is_empty());
+            kind.use_tangent(have_tools || !experiment.tools.is_empty() || !kind.moved.is_empty());
         }
     }
     // What a file of loads moves is not in the document.
@@ -149,13 +150,13 @@ pub fn prepare(document: &Document) -> Result<Prepared> {
     let keeps_tractions = experiment.keeps_tractions() || are_moved || chemistry.reads_tractions();
     let model = Model {
         seed: experiment.seed,
-        kinks: kinks(&kinds),
+        kinks: kinks(&kinds, &obstacles),
         changes: population::changes(experiment, &kinds),
         integrator,
         contact: contact.map(|contact| contact.suited_to(integrator.size)),
         kinds,
         chemistry,
-        planes,
+        obstacles,
         until: experiment.run.until.value(),
         rest: experiment.run.equilibrium.map(|equilibrium| equilibrium.force.value()),
         keeps_tractions,
@@ -242,13 +243,4 @@ fn volume_rule(document: &Document, key: &str, cell: &CellType, kind: &Kind, fau
             VolumeRule::Compressible { modulus: control.modulus.map_or(0.0, |modulus| modulus.value()), course: factor }
         }
     }
-}
-
-fn planes(experiment: &Experiment) -> Vec<Plane> {
-    let plane = |plane: &super::Plane| Plane {
-        name: plane.name.clone(),
-        point: vector(plane.point.map(|x| x.value())),
-        normal: unit(plane.normal),
-    };
-    experiment.planes.iter().map(plane).collect()
 }

@@ -79,7 +79,7 @@ pub fn told(model: &Model, state: &State, overlap: &Overlap) -> Found {
 }
 
 /// Cells that reach farther behind a plane than a step may move an atom.
-pub fn behind_planes(model: &Model, state: &State, contact: &ContactScene, positions: &[Vec3]) -> Vec<Found> {
+pub fn behind_obstacles(model: &Model, state: &State, contact: &ContactScene, positions: &[Vec3]) -> Vec<Found> {
     let mut found = Vec::new();
     let mut atoms = positions;
     for body in 0..state.cells() as u32 {
@@ -87,12 +87,13 @@ pub fn behind_planes(model: &Model, state: &State, contact: &ContactScene, posit
         let kind = &model.kinds[number];
         let (own, others) = atoms.split_at(kind.atoms());
         atoms = others;
-        for plane in &model.planes {
-            let height = |p: &Vec3| (p - plane.point).dot(&plane.normal);
+        for obstacle in &model.obstacles {
+            let height = |p: &Vec3| obstacle.surface.gap(p);
             let depth = -own.iter().map(height).fold(f64::INFINITY, f64::min);
             if depth > contact.reach.safe_travel() {
                 let (name, depth) = (name_of(model, state, body), short(depth));
-                let words = format!("{name} reaches {depth} um behind the plane `{}`", plane.name);
+                let into = if obstacle.surface.as_plane().is_some() { "behind the plane" } else { "into the tool" };
+                let words = format!("{name} reaches {depth} um {into} `{}`", obstacle.name);
                 found.push(Found { kind: number, words });
             }
         }

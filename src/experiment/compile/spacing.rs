@@ -8,7 +8,7 @@ use crate::error::{Error, Fault, Result};
 use crate::geometry::{Occupied, bounding_box};
 use crate::random::{Purpose, Stream};
 use crate::sim::seeding::{TRIES, radius_around, take_point};
-use crate::sim::{Kind, Plane};
+use crate::sim::{Kind, Obstacle};
 use std::ops::Range;
 
 /// Centres of all cells of all kinds, `[kind][cell]`: those placed at random draw until the spheres around them keep `gap` (µm)
@@ -16,7 +16,7 @@ use std::ops::Range;
 ///
 /// # Errors
 /// When the box is too full.
-pub fn centres_apart(document: &Document, kinds: &[Kind], planes: &[Plane], gap: f64) -> Result<Vec<Vec<Vec3>>> {
+pub fn centres_apart(document: &Document, kinds: &[Kind], obstacles: &[Obstacle], gap: f64) -> Result<Vec<Vec<Vec3>>> {
     let experiment = &document.experiment;
     let cells = || experiment.cells.values().zip(kinds).zip(first_cells(experiment));
     let is_random = |cell: &CellType| matches!(cell.placement, Some(Placement::Random { .. }));
@@ -34,7 +34,7 @@ pub fn centres_apart(document: &Document, kinds: &[Kind], planes: &[Plane], gap:
         all.push(match &cell.placement {
             Some(Placement::Random { random_from, random_to }) => {
                 let corners = [random_from, random_to].map(|corner| vector(corner.map(|x| x.value())));
-                seed_kind(document, kind, first..first + cell.count(), planes, corners, &mut taken)?
+                seed_kind(document, kind, first..first + cell.count(), obstacles, corners, &mut taken)?
             }
             _ => centres(experiment, cell, kind, first),
         });
@@ -47,14 +47,14 @@ fn seed_kind(
     document: &Document,
     kind: &Kind,
     cells: Range<usize>,
-    planes: &[Plane],
+    obstacles: &[Obstacle],
     [low, high]: [Vec3; 2],
     taken: &mut Occupied,
 ) -> Result<Vec<Vec3>> {
     let mut centres = Vec::new();
     for cell in cells.clone() {
         let mut stream = Stream::new(document.experiment.seed, Purpose::Placement, cell as u32, 0);
-        let Some(centre) = take_point(kind, planes, [low, high], &mut stream, taken) else {
+        let Some(centre) = take_point(kind, obstacles, [low, high], &mut stream, taken) else {
             return Err(too_full(document, kind, [cell - cells.start, cells.len()], taken, [low, high]));
         };
         centres.push(centre);

@@ -2,7 +2,7 @@
 
 use super::super::Document;
 use super::Compiled;
-use super::overlap::{Found, behind_planes, refusal, told, too_deep};
+use super::overlap::{Found, behind_obstacles, refusal, told, too_deep};
 use crate::Vec3;
 use crate::contact::{Overlap, Yielding, find_overlaps_told, push_apart};
 use crate::error::{Result, short};
@@ -94,7 +94,7 @@ pub fn settle_start_told(
     let list =
         |overlaps: &[Overlap]| overlaps.iter().map(|overlap| told(model, state, overlap)).collect::<Vec<Found>>();
     let head = format!("cells overlap at the start, and {ROUNDS} rounds of pushing have not parted them all: ");
-    let space = if model.planes.is_empty() { "" } else { ", or give them more space between the planes" };
+    let space = if model.obstacles.is_empty() { "" } else { ", or give them more space between the planes" };
     refusal(document, model, &head, &list(&left), space)?;
     let far = too_far(model, state, &moves);
     let head = "cells overlap at the start, and to part them some would have to move farther than their radius: ";
@@ -120,7 +120,7 @@ fn refuse_what_cannot_move(
     let found = |is: &dyn Fn(&Overlap) -> bool| -> Vec<Found> {
         overlaps.iter().filter(|overlap| is(overlap)).map(|overlap| told(model, state, overlap)).collect()
     };
-    let behind = behind_planes(model, state, contact, positions);
+    let behind = behind_obstacles(model, state, contact, positions);
     if !behind.is_empty() {
         let all: Vec<Found> = found(&|_| true).into_iter().chain(behind).collect();
         return refusal(

@@ -164,7 +164,7 @@ impl Check<'_> {
         }
         for (index, between) in contact.between.iter().enumerate() {
             let path = format!("contact.between[{index}]");
-            let on_plane = matches!(between.pair(&self.document.experiment), Some(Pair::OnPlane(..)));
+            let on_plane = matches!(between.pair(&self.document.experiment), Some(Pair::OnObstacle(..)));
             if contact.model == ContactModel::Links && on_plane {
                 let message = format!("`{path}` names a plane, and links join facets of cells");
                 let help = "leave the pair out: cells rest on planes and slide there";

@@ -54,6 +54,7 @@ impl Check<'_> {
                 self.fault(&format!("planes[{index}].name"), "taken", message, "give every plane its own name");
             }
         }
+        self.tools();
         for (index, plot) in experiment.plot.iter().enumerate() {
             if experiment.plot[..index].iter().any(|other| other.name == plot.name) {
                 let message = format!("`plot[{index}].name` is the name of another plot too");

@@ -7,7 +7,7 @@ use super::super::state::{State, vector};
 use super::super::trouble::Trouble;
 use super::expected::missed;
 use super::links::{AtAtoms, AtomControl, Control, Owner, Source, Target};
-use super::measure::is_on_plane;
+use super::measure::is_on_obstacle;
 use super::model::Members;
 use super::observe::pick;
 use super::scratch::ChemistryScratch;
@@ -111,8 +111,8 @@ fn read(
         let truth = |holds: bool| if holds { 1.0 } else { 0.0 };
         match what {
             AtomReading::OnPlane(which) => {
-                let planes = which.map_or(&model.planes[..], |number| &model.planes[number..=number]);
-                numbers.extend(positions.iter().map(|x| truth(is_on_plane(planes, kind, x))));
+                let obstacles = which.map_or(&model.obstacles[..], |number| &model.obstacles[number..=number]);
+                numbers.extend(positions.iter().map(|x| truth(is_on_obstacle(obstacles, kind, x))));
             }
             AtomReading::InContact(with) => {
                 let (begin, near) = near_cell(kind, now, found, cell);

@@ -5,14 +5,14 @@ use rayon::prelude::*;
 use super::super::contact::{ContactScene, near_cell};
 use super::super::kind::Kind;
 use super::super::model::Model;
-use super::super::plane::Plane;
+use super::super::obstacle::Obstacle;
 use super::super::state::{State, vector};
 use crate::Vec3;
 use crate::cell::ends::Reading;
 use crate::contact::AtomContact;
 
-/// An atom touches a plane when it is nearer to it than this part of the mean edge: planes put atoms exactly on them, but where cells touch
-/// each other, too, atoms that are pressed on a plane are off it by what sweeps leave, some 10⁻⁴ of an edge.
+/// An atom touches an obstacle when it is nearer to it than this part of the mean edge: obstacles put atoms exactly on them, but where cells touch
+/// each other, too, atoms that are pressed on an obstacle are off it by what sweeps leave, some 10⁻⁴ of an edge.
 const TOUCHING: f64 = 1e-3;
 
 /// Measures of one cell at one instant.
@@ -30,7 +30,7 @@ pub struct CellNumbers {
     size: Vec3,
     /// Part of the atoms near another cell, as it is recorded.
     contact_share: f64,
-    /// Part of the atoms on a plane.
+    /// Part of the atoms on an obstacle.
     plane_share: f64,
     /// Volume and area of the mesh at rest.
     rest: [f64; 2],
@@ -86,20 +86,20 @@ pub(super) fn measure_cells(
     }
 }
 
-/// Whether an atom of a kind stands on one of these planes.
-pub(super) fn is_on_plane(planes: &[Plane], kind: &Kind, atom: &Vec3) -> bool {
-    planes.iter().any(|plane| (atom - plane.point).dot(&plane.normal) < TOUCHING * kind.edge)
+/// Whether an atom of a kind stands on one of these obstacles.
+pub(super) fn is_on_obstacle(obstacles: &[Obstacle], kind: &Kind, atom: &Vec3) -> bool {
+    obstacles.iter().any(|obstacle| obstacle.surface.gap(atom) < TOUCHING * kind.edge)
 }
 
 fn measure(model: &Model, kind: &Kind, x: &[f64], cell: usize, is_near: impl Fn(u32) -> bool) -> CellNumbers {
     let position = |atom: usize| vector(kind, x, cell, atom);
     let base = position(0);
     let (mut low, mut high, mut sum) = (base, base, Vec3::zeros());
-    let (mut near_cells, mut on_planes) = (0_usize, 0_usize);
+    let (mut near_cells, mut on_obstacles) = (0_usize, 0_usize);
     for atom in 0..kind.atoms() {
         let p = position(atom);
         (low, high, sum) = (low.inf(&p), high.sup(&p), sum + (p - base));
-        on_planes += usize::from(is_on_plane(&model.planes, kind, &p));
+        on_obstacles += usize::from(is_on_obstacle(&model.obstacles, kind, &p));
         near_cells += usize::from(is_near(atom as u32));
     }
     let (mut area, mut volume, mut moment) = (0.0, 0.0, Vec3::zeros());
@@ -118,7 +118,7 @@ fn measure(model: &Model, kind: &Kind, x: &[f64], cell: usize, is_near: impl Fn(
         area,
         size: high - low,
         contact_share: near_cells as f64 / atoms,
-        plane_share: on_planes as f64 / atoms,
+        plane_share: on_obstacles as f64 / atoms,
         ..CellNumbers::default()
     }
 }

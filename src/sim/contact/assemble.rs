@@ -46,11 +46,11 @@ pub struct Written<'a> {
 type Known = (Row, [f32; 3]);
 
 /// Writes the rows of all contacts, with the forces that they carried in the last step as far as they can bear them: atoms on facets, then
-/// edges on edges, then atoms on planes. `index` is where a row goes by its number in this order.
+/// edges on edges, then atoms on obstacles. `index` is where a row goes by its number in this order.
 pub fn write_rows(from: Written, index: impl Fn(usize) -> usize + Sync, rows: &mut Vec<Row>, pulls: &mut Vec<Pull>) {
     let found = from.found;
     let (of_atoms, of_edges) = (found.atoms.len(), found.edges.len());
-    let count = of_atoms + of_edges + found.planes.len();
+    let count = of_atoms + of_edges + found.obstacles.len();
     resize_for(rows, count, Row::NOTHING);
     resize_for(pulls, count, Pull::default());
     let (rows, pulls) = (Together::new(rows), Together::new(pulls));
@@ -68,9 +68,9 @@ pub fn write_rows(from: Written, index: impl Fn(usize) -> usize + Sync, rows: &m
     let part = |job: usize, count: usize| job * CONTACTS_PER_JOB..count.min((job + 1) * CONTACTS_PER_JOB);
     jobs(of_atoms).for_each(|job| from.atoms(part(job, of_atoms), &put));
     jobs(of_edges).for_each(|job| from.edges(part(job, of_edges), &|edge, known| put(of_atoms + edge, known)));
-    let of_planes = found.planes.len();
-    let put = |plane: usize, known: Known| put(of_atoms + of_edges + plane, known);
-    jobs(of_planes).for_each(|job| from.planes(part(job, of_planes), &put));
+    let of_obstacles = found.obstacles.len();
+    let put = |obstacle: usize, known: Known| put(of_atoms + of_edges + obstacle, known);
+    jobs(of_obstacles).for_each(|job| from.obstacles(part(job, of_obstacles), &put));
 }
 
 /// A row that has not been swept.
@@ -175,37 +175,37 @@ impl Written<'_> {
         }
     }
 
-    /// Tells the rows of some atoms on planes.
-    fn planes(&self, numbers: Range<usize>, put: &impl Fn(usize, Known)) {
+    /// Tells the rows of some atoms on obstacles.
+    fn obstacles(&self, numbers: Range<usize>, put: &impl Fn(usize, Known)) {
         let &Self { model, found, before, controls, facing, .. } = self;
         let scene = &model.scene;
-        let key = |number: usize| (found.planes[number].atom, found.planes[number].plane);
+        let key = |number: usize| (found.obstacles[number].atom, found.obstacles[number].obstacle);
         let mut body = scene.body_of_atom(key(numbers.start).0) as usize;
-        let mut first = before.planes.partition_point(|bond| (bond.atom, bond.plane) < key(numbers.start));
+        let mut first = before.obstacles.partition_point(|bond| (bond.atom, bond.obstacle) < key(numbers.start));
         for number in numbers {
-            let contact = &found.planes[number];
+            let contact = &found.obstacles[number];
             while scene.bodies.get(body + 1).is_some_and(|next| next.first_atom <= contact.atom) {
                 body += 1;
             }
             let key = key(number);
-            while before.planes.get(first).is_some_and(|bond| (bond.atom, bond.plane) < key) {
+            while before.obstacles.get(first).is_some_and(|bond| (bond.atom, bond.obstacle) < key) {
                 first += 1;
             }
-            let same = before.planes.get(first).filter(|bond| (bond.atom, bond.plane) == key);
+            let same = before.obstacles.get(first).filter(|bond| (bond.atom, bond.obstacle) == key);
             let kind = model.kind_of(body as u32);
-            let strength = model.strength_on(body, contact.plane);
-            let cohesive = model.cohesion_of(body as u32, Faced::Plane(contact.plane));
+            let strength = model.strength_on(body, contact.obstacle);
+            let cohesive = model.cohesion_of(body as u32, Faced::Obstacle(contact.obstacle));
             let area = match cohesive {
-                Some(_) => area_between(facing, contact.atom, Faced::Plane(contact.plane)),
+                Some(_) => area_between(facing, contact.atom, Faced::Obstacle(contact.obstacle)),
                 None => model.areas[kind][(contact.atom - scene.bodies[body].first_atom) as usize],
             };
             let area = area * controls.adhesion_of(body) * controls.adhesion_of_atom(contact.atom);
             let (force, stored) = same.map_or(([0.0; 3], 0.0), |bond| (bond.force, bond.stored));
             let row = row(
-                Pairing::AtomOnPlane,
+                Pairing::AtomOnObstacle,
                 [contact.atom; 4],
                 [0.0; 2],
-                scene.planes[contact.plane as usize].normal.into(),
+                contact.normal,
                 contact.gap,
                 [-strength.tensile * area, strength.shear * area, cohesive.map_or(0.0, |it| it.friction * area)],
                 stored,

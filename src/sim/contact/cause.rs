@@ -35,7 +35,7 @@ pub fn help_at(trouble: &Trouble, model: &Model, state: &State) -> &'static str 
 enum Cause {
     /// The surface of a cell is folded.
     Folded,
-    /// A cell has others, or planes, on most of its surface.
+    /// A cell has others, or obstacles, on most of its surface.
     Crowded,
     /// Neither: cells in the open that move or yield too fast.
     Open,
@@ -72,11 +72,11 @@ fn cause_of(model: &Model, state: &State, cells: &[(String, usize); 2]) -> Cause
     if bodies.into_iter().any(is_surrounded) { Cause::Crowded } else { Cause::Open }
 }
 
-/// The part of a cell's atoms that touch another cell or a plane.
+/// The part of a cell's atoms that touch another cell or an obstacle.
 fn surrounded(contact: &ContactScene, found: &Contacts, body: u32) -> f64 {
     let scene = &contact.scene;
     let others = found.atoms.iter().filter(|near| near.body(scene) != body).map(|near| near.atom);
-    let mut touching: Vec<u32> = others.chain(found.planes.iter().map(|near| near.atom)).collect();
+    let mut touching: Vec<u32> = others.chain(found.obstacles.iter().map(|near| near.atom)).collect();
     touching.retain(|atom| scene.body_of_atom(*atom) == body);
     touching.sort_unstable();
     touching.dedup();

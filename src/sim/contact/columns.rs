@@ -81,8 +81,8 @@ pub(super) fn direction(row: &Row, number: usize) -> Vec3 {
 /// The corners of a side of a row: all where both sides are of one cell.
 fn corners(row: &Row, side: usize, is_alone: bool) -> Range<usize> {
     match (row.pairing, side) {
-        (Pairing::Rigid, _) | (Pairing::AtomOnPlane, 1) => 0..0,
-        (Pairing::AtomOnPlane, _) => 0..1,
+        (Pairing::Rigid, _) | (Pairing::AtomOnObstacle, 1) => 0..0,
+        (Pairing::AtomOnObstacle, _) => 0..1,
         _ if is_alone => {
             if side == 0 {
                 0..4

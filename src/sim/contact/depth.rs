@@ -101,7 +101,7 @@ struct Deepest {
     share: f64,
     /// Depth, µm.
     depth: f64,
-    /// The two cells; twice the same on a plane.
+    /// The two cells; twice the same on an obstacle.
     bodies: [u32; 2],
 }
 
@@ -113,9 +113,9 @@ impl Deepest {
         let of_atoms = of_atoms.map(|near| (near.gap, [contact.body_of(near.atom), near.body(&contact.scene)]));
         let of_edges = found.edges.par_iter().with_min_len(CONTACTS_PER_JOB).filter(|near| near.gap < 0.0);
         let of_edges = of_edges.map(|near| (near.gap, near.bodies(&contact.scene)));
-        let of_planes = found.planes.par_iter().with_min_len(CONTACTS_PER_JOB).filter(|near| near.gap < 0.0);
-        let of_planes = of_planes.map(|near| (near.gap, [contact.body_of(near.atom); 2]));
-        let all = of_atoms.chain(of_edges).chain(of_planes).map(|(gap, bodies)| {
+        let of_obstacles = found.obstacles.par_iter().with_min_len(CONTACTS_PER_JOB).filter(|near| near.gap < 0.0);
+        let of_obstacles = of_obstacles.map(|near| (near.gap, [contact.body_of(near.atom); 2]));
+        let all = of_atoms.chain(of_edges).chain(of_obstacles).map(|(gap, bodies)| {
             let [one, other] = bodies.map(edge);
             Self { share: -gap / one.min(other), depth: -gap, bodies }
         });
@@ -160,7 +160,7 @@ pub fn check_passed(model: &Model, state: &State) -> Result<(), Trouble> {
     passed.map_or(Ok(()), |(body, other, depth)| Err(pressed(model, state, [body, other], depth)))
 }
 
-/// Refuses cells that were just added behind the others of their kind where they overlap others, or are behind planes.
+/// Refuses cells that were just added behind the others of their kind where they overlap others, or are behind obstacles.
 ///
 /// # Errors
 /// The first that is where it cannot be.
@@ -196,11 +196,15 @@ pub fn check_added(model: &Model, state: &State, kind: usize, added: usize) -> R
     for body in new {
         let first = contact.scene.bodies[body as usize].first_atom as usize;
         let atoms = &positions[first..first + contact.scene.shape(body).atoms];
-        for plane in &model.planes {
-            let height = |x: &Vec3| (x - plane.point).dot(&plane.normal);
+        for obstacle in &model.obstacles {
+            let height = |x: &Vec3| obstacle.surface.gap(x);
             let depth = -atoms.iter().map(height).fold(f64::INFINITY, f64::min);
             if depth > contact.reach.safe_travel() {
-                return Err(PopulationTrouble::BehindPlane { cell: name(body), plane: plane.name.clone(), depth });
+                return Err(PopulationTrouble::BehindObstacle {
+                    cell: name(body),
+                    obstacle: obstacle.name.clone(),
+                    depth,
+                });
             }
         }
     }

@@ -12,10 +12,10 @@ use super::rub::write_rubbing;
 use super::scene::ContactScene;
 use super::scratch::{ContactForces, ContactScratch, empty_for, resize_for};
 use super::spread::{add_spreading, releases_energy};
-use super::state::{AtomBond, ContactState, EdgeBond, PlaneBond};
+use super::state::{AtomBond, ContactState, EdgeBond, ObstacleBond};
 use super::turns::Turns;
 use crate::Vec3;
-use crate::contact::{AtomContact, Contacts, Facing, PlaneContact};
+use crate::contact::{AtomContact, Contacts, Facing, ObstacleContact};
 use crate::sim::controls::Controls;
 use crate::sim::kind::Kind;
 use crate::sim::model::Model;
@@ -66,9 +66,9 @@ pub fn locate_contacts(model: &Model, state: &State, ws: &mut Workspace) {
 /// Finds the order in which the contacts are swept that were found, where they are so many that threads share them: then their rows stand
 /// in it from the begin. Those of few are put in order by the sweeps that need it.
 fn order_rows(contact: &ContactScene, s: &mut ContactScratch) {
-    let ContactScratch { found: Contacts { atoms, edges, planes }, mobility, is_in_turns, .. } = s;
+    let ContactScratch { found: Contacts { atoms, edges, obstacles }, mobility, is_in_turns, .. } = s;
     let (of_atoms, of_edges) = (atoms.len(), atoms.len() + edges.len());
-    let count = of_edges + planes.len();
+    let count = of_edges + obstacles.len();
     // What rubs without touching has rows after those of contacts.
     let rubs = contact.law.cohesion().is_some_and(|table| table.has_friction());
     *is_in_turns = contact.law.moves_as_steps() && Turns::are_many(count) && !rubs;
@@ -79,7 +79,7 @@ fn order_rows(contact: &ContactScene, s: &mut ContactScratch) {
     let between = |row: usize| match row {
         row if row < of_atoms => [scene.body_of_atom(atoms[row].atom), atoms[row].body(scene)],
         row if row < of_edges => edges[row - of_atoms].bodies(scene),
-        row => [scene.body_of_atom(planes[row - of_edges].atom); 2],
+        row => [scene.body_of_atom(obstacles[row - of_edges].atom); 2],
     };
     mobility.turns.find(count, between, scene.bodies.len());
 }
@@ -179,7 +179,7 @@ const BONDS_PER_JOB: usize = 1024;
 
 /// Writes what contacts carry. The contacts must be those of the rows.
 fn write_bonds(s: &ContactScratch, bonds: &mut ContactState) {
-    let ContactState { atoms, edges, planes, .. } = bonds;
+    let ContactState { atoms, edges, obstacles, .. } = bonds;
     let found = &s.found;
     let known = |number: usize| {
         let at = s.row_of(number);
@@ -199,9 +199,9 @@ fn write_bonds(s: &ContactScratch, bonds: &mut ContactState) {
     for (force, contact) in loaded() {
         edges.push(EdgeBond { edges: contact.edges, normal: contact.normal.0, force });
     }
-    empty_for(planes, found.planes.len());
-    for (number, contact) in (found.atoms.len() + found.edges.len()..).zip(&found.planes) {
-        let (&PlaneContact { atom, plane, .. }, (row, pull)) = (contact, known(number));
-        planes.push(PlaneBond { atom, plane, force: pull.force, stored: stored_after(row, pull) });
+    empty_for(obstacles, found.obstacles.len());
+    for (number, contact) in (found.atoms.len() + found.edges.len()..).zip(&found.obstacles) {
+        let (&ObstacleContact { atom, obstacle, .. }, (row, pull)) = (contact, known(number));
+        obstacles.push(ObstacleBond { atom, obstacle, force: pull.force, stored: stored_after(row, pull) });
     }
 }

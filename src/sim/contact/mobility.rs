@@ -168,7 +168,7 @@ impl Mobility {
         let owner = |corner: usize| match row.pairing {
             Pairing::AtomOnFacet => bodies[usize::from(corner > 0)],
             Pairing::Edges => bodies[corner / 2],
-            Pairing::AtomOnPlane | Pairing::Rigid => bodies[0],
+            Pairing::AtomOnObstacle | Pairing::Rigid => bodies[0],
         };
         let shape = |corner: usize| {
             let body = &self.bodies[owner(corner) as usize];
@@ -180,7 +180,7 @@ impl Mobility {
             let side = usize::from(match row.pairing {
                 Pairing::AtomOnFacet => corner > 0,
                 Pairing::Edges => corner > 1,
-                Pairing::AtomOnPlane | Pairing::Rigid => false,
+                Pairing::AtomOnObstacle | Pairing::Rigid => false,
             });
             let centre = self.bodies[owner(corner) as usize].centre;
             arms[side] += weights[corner] * (positions[row.atoms[corner] as usize] - centre);
@@ -282,7 +282,7 @@ pub fn sides(shapes: &[OfModes], lever: &Lever, row: &Row, [p, q, r, s]: [f64; 4
                 other[k] = r * c[k] + s * d[k];
             }
         }
-        Pairing::AtomOnPlane => one = a.map(|a| p * a),
+        Pairing::AtomOnObstacle => one = a.map(|a| p * a),
         Pairing::Rigid => {}
     }
     [one, other]

@@ -64,7 +64,7 @@ pub use rows::{Pairing, Pull, Row};
 pub use scene::ContactScene;
 pub use scratch::{ContactForces, ContactScratch, SweepRules};
 pub use settle::settle_adhesives;
-pub use state::{AdhesiveAtom, AtomBond, ContactState, EdgeBond, Faced, Link, Numbered, PlaneBond, SurfaceBonds};
+pub use state::{AdhesiveAtom, AtomBond, ContactState, EdgeBond, Faced, Link, Numbered, ObstacleBond, SurfaceBonds};
 pub use steep::{answer, are_steep, find_slopes, take_answer};
 pub use touch::near_cell;
 pub use tractions::ContactTractions;

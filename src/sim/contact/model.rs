@@ -3,27 +3,27 @@
 use std::sync::Arc;
 
 use super::laws::{CohesionTable, Law, Strength};
-use crate::contact::{self, Reach, Shape, Sides};
+use crate::contact::{Reach, Shape, Sides};
 use crate::geometry;
 use crate::mechanics::integrator::StepSize;
 use crate::sim::kind::Kind;
-use crate::sim::plane::Plane;
+use crate::sim::obstacle::Obstacle;
 
 /// Contacts of a model.
 #[derive(Debug, Clone)]
 pub struct ContactModel {
     /// The mesh of each kind.
     pub shapes: Arc<[Shape]>,
-    /// Rigid planes.
-    pub planes: Vec<contact::Plane>,
+    /// Rigid obstacles.
+    pub obstacles: Vec<geometry::Obstacle>,
     /// How near is a contact.
     pub reach: Reach,
     /// What keeps surfaces together.
     pub law: Law,
     /// Strength between kinds: `between[kind * kinds + other]`, symmetric.
     pub between: Vec<Strength>,
-    /// Strength between kinds and planes: `on_planes[kind * planes + plane]`.
-    pub on_planes: Vec<Strength>,
+    /// Strength between kinds and obstacles: `on_obstacles[kind * obstacles + obstacle]`.
+    pub on_obstacles: Vec<Strength>,
     /// How areas of contact are measured: what is nearer than its range is in contact.
     pub area: CohesionTable,
     /// What a sweep may still move at the end, µm.
@@ -50,21 +50,20 @@ const TOLERANCE: f64 = 1e-4;
 const SHARE_OF_ERROR: f64 = 0.3;
 
 impl ContactModel {
-    /// Contacts of all cells of these kinds with each other, with themselves and with planes, without any strength.
-    pub fn new(kinds: &[Kind], planes: &[Plane], reach: Reach) -> Self {
+    /// Contacts of all cells of these kinds with each other, with themselves and with obstacles, without any strength.
+    pub fn new(kinds: &[Kind], obstacles: &[Obstacle], reach: Reach) -> Self {
         let sides = |kind: &Kind| if kind.closed { Sides::Outer } else { Sides::Both };
         let shapes = kinds.iter().map(|kind| Shape::new(&kind.rest, sides(kind), 1.5 * reach.proximity));
-        let plane = |plane: &Plane| contact::Plane { point: plane.point, normal: plane.normal };
         let edges: Vec<f64> = kinds.iter().map(|kind| kind.edge).collect();
         let edge = edges.iter().copied().fold(f64::INFINITY, f64::min);
         Self {
             shapes: shapes.collect(),
-            planes: planes.iter().map(plane).collect(),
+            obstacles: obstacles.iter().map(|obstacle| obstacle.surface.clone()).collect(),
             reach,
             law: Law::default(),
             between: vec![Strength::default(); kinds.len() * kinds.len()],
-            on_planes: vec![Strength::default(); kinds.len() * planes.len()],
-            area: CohesionTable::alike(&edges, planes.len(), AREA_WITHIN),
+            on_obstacles: vec![Strength::default(); kinds.len() * obstacles.len()],
+            area: CohesionTable::alike(&edges, obstacles.len(), AREA_WITHIN),
             tolerance: TOLERANCE * edge,
             most_sweeps: MOST_SWEEPS,
             areas: kinds.iter().map(|kind| geometry::atom_areas(&kind.rest)).collect(),
@@ -87,9 +86,9 @@ impl ContactModel {
         self.between[other * kinds + kind] = strength;
     }
 
-    /// Sets the strength between a kind and a plane.
-    pub fn stick_to_plane(&mut self, kind: usize, plane: usize, strength: Strength) {
-        let planes = self.planes.len();
-        self.on_planes[kind * planes + plane] = strength;
+    /// Sets the strength between a kind and an obstacle.
+    pub fn stick_to_obstacle(&mut self, kind: usize, obstacle: usize, strength: Strength) {
+        let obstacles = self.obstacles.len();
+        self.on_obstacles[kind * obstacles + obstacle] = strength;
     }
 }

@@ -1,7 +1,7 @@
 //! Cells that come and go: what contacts carry keeps to the cells that stay.
 
 use super::scene::ContactScene;
-use super::state::{AdhesiveAtom, AtomBond, ContactState, EdgeBond, Faced, Link, PlaneBond, SurfaceBonds};
+use super::state::{AdhesiveAtom, AtomBond, ContactState, EdgeBond, Faced, Link, ObstacleBond, SurfaceBonds};
 
 /// From the numbers of before to those of now.
 struct Renumbering<'a> {
@@ -42,7 +42,7 @@ impl Renumbering<'_> {
     fn surface_bonds(&self, bonds: &SurfaceBonds) -> Option<SurfaceBonds> {
         let other = match bonds.other {
             Faced::Body(body) => Faced::Body(self.body(body)?),
-            plane @ Faced::Plane(_) => plane,
+            obstacle @ Faced::Obstacle(_) => obstacle,
         };
         Some(SurfaceBonds { facet: self.facet(bonds.facet)?, other, ..*bonds })
     }
@@ -74,11 +74,12 @@ impl ContactState {
             .edges
             .iter()
             .filter_map(|bond| Some(EdgeBond { edges: to.pair(bond.edges, Renumbering::edge)?, ..*bond }));
-        let planes = self.planes.iter().filter_map(|bond| Some(PlaneBond { atom: to.atom(bond.atom)?, ..*bond }));
+        let obstacles =
+            self.obstacles.iter().filter_map(|bond| Some(ObstacleBond { atom: to.atom(bond.atom)?, ..*bond }));
         ContactState {
             atoms: atoms.collect(),
             edges: edges.collect(),
-            planes: planes.collect(),
+            obstacles: obstacles.collect(),
             links: self.links.iter().filter_map(|link| to.link(link)).collect(),
             adhesives: adhesives(&to, &self.adhesives),
             released: self.released.iter().filter_map(|atom| to.atom(*atom)).collect(),

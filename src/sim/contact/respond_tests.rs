@@ -47,7 +47,7 @@ fn cells(count: usize, order: Order, is_viscous: bool) -> (Model, State) {
     (model, state)
 }
 
-/// Rows of an atom on a plane, and of an atom of each cell on a facet of the next, some of which bear shear.
+/// Rows of an atom on an obstacle, and of an atom of each cell on a facet of the next, some of which bear shear.
 fn rows(model: &Model, cells: usize) -> Vec<Row> {
     let kind = &model.kinds[0];
     let (count, facets) = (kind.atoms() as u32, &kind.rest.facets);
@@ -57,7 +57,7 @@ fn rows(model: &Model, cells: usize) -> Vec<Row> {
         let shear = if number.is_multiple_of(3) { 1.0 } else { 0.0 };
         Row { atoms, coordinates: [0.2, 0.5], normal_and_gap, shear, pairing, ..Row::NOTHING }
     };
-    let mut rows: Vec<Row> = (0..5).map(|number| row(number, [7 * number; 4], Pairing::AtomOnPlane)).collect();
+    let mut rows: Vec<Row> = (0..5).map(|number| row(number, [7 * number; 4], Pairing::AtomOnObstacle)).collect();
     for cell in 0..cells as u32 {
         let (own, next) = (cell * count, (cell + 1) % cells as u32 * count);
         let [a, b, c] = facets[(9 * cell + 3) as usize].map(|atom| next + atom);

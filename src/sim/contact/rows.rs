@@ -39,7 +39,7 @@ pub enum Pairing {
     /// The two atoms of an edge, and those of another.
     Edges,
     /// An atom, four times.
-    AtomOnPlane,
+    AtomOnObstacle,
     /// All atoms move as one, so that the contact does nothing.
     Rigid,
 }
@@ -80,7 +80,7 @@ impl Row {
         match self.pairing {
             Pairing::AtomOnFacet => [1.0, -(1.0 - s - t), -s, -t],
             Pairing::Edges => [1.0 - s, s, t - 1.0, -t],
-            Pairing::AtomOnPlane => [1.0, 0.0, 0.0, 0.0],
+            Pairing::AtomOnObstacle => [1.0, 0.0, 0.0, 0.0],
             Pairing::Rigid => [0.0; 4],
         }
     }

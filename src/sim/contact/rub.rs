@@ -45,9 +45,9 @@ pub fn write_rubbing(
                 let friction = SHARE * own * of_other;
                 ([this.atom, i, j, k], [v, w], normal, Pairing::AtomOnFacet, friction)
             }
-            Faced::Plane(plane) => {
-                let normal = model.scene.planes[plane as usize].normal;
-                ([this.atom; 4], [0.0; 2], normal, Pairing::AtomOnPlane, own)
+            Faced::Obstacle(obstacle) => {
+                let normal = model.scene.obstacles[obstacle as usize].normal(&positions[this.atom as usize]);
+                ([this.atom; 4], [0.0; 2], normal, Pairing::AtomOnObstacle, own)
             }
         };
         let [x, y, z] = [normal.x, normal.y, normal.z].map(|part| part as f32);
@@ -78,8 +78,8 @@ fn touches(model: &ContactScene, found: &Contacts, this: &Facing) -> bool {
             let mut of_atom = found.atoms[first..].iter().take_while(|near| near.atom == this.atom);
             of_atom.any(|near| near.body(&model.scene) == other)
         }
-        Faced::Plane(plane) => {
-            found.planes.binary_search_by_key(&(this.atom, plane), |near| (near.atom, near.plane)).is_ok()
+        Faced::Obstacle(obstacle) => {
+            found.obstacles.binary_search_by_key(&(this.atom, obstacle), |near| (near.atom, near.obstacle)).is_ok()
         }
     }
 }

@@ -20,7 +20,7 @@ pub(super) struct Surfaces {
 #[derive(Debug, Clone)]
 pub struct ContactScene<'a> {
     rules: &'a ContactModel,
-    /// All surfaces and planes: body `i` is cell `i`, shape `i` is kind `i`.
+    /// All surfaces and obstacles: body `i` is cell `i`, shape `i` is kind `i`.
     pub scene: Arc<Scene>,
     first_atom: Arc<[usize]>,
 }
@@ -38,7 +38,7 @@ impl Surfaces {
     pub fn of(rules: &ContactModel, cells: &[KindState]) -> Self {
         let bodies = cells.iter().enumerate().flat_map(|(kind, now)| std::iter::repeat_n(kind, now.cells()));
         let shape_of_body: Vec<usize> = bodies.collect();
-        let scene = Scene::new(rules.shapes.clone(), &shape_of_body, rules.planes.clone(), rules.reach);
+        let scene = Scene::new(rules.shapes.clone(), &shape_of_body, rules.obstacles.clone(), rules.reach);
         let mut first_atom = vec![0];
         let mut end = 0;
         first_atom.extend(cells.iter().zip(&*rules.shapes).map(|(now, shape)| {
@@ -75,9 +75,9 @@ impl ContactScene<'_> {
         self.between[kind * self.areas.len() + other]
     }
 
-    /// How strongly a body sticks to a plane.
-    pub(super) fn strength_on(&self, body: usize, plane: u32) -> Strength {
-        self.on_planes[self.kind_of(body as u32) * self.planes.len() + plane as usize]
+    /// How strongly a body sticks to an obstacle.
+    pub(super) fn strength_on(&self, body: usize, obstacle: u32) -> Strength {
+        self.on_obstacles[self.kind_of(body as u32) * self.obstacles.len() + obstacle as usize]
     }
 
     /// How a body and what it faces stick to each other where the cohesive law draws them to each other; none where it does not.

@@ -65,7 +65,7 @@ pub struct ContactScratch {
     pub(super) relief: Vec<f64>,
     /// What each bond bears along the surface around each atom and what it faces, pN; empty where surfaces have no bonds.
     pub(super) shear: Vec<f64>,
-    /// Contacts as the sweeps see them: atoms on facets, then edges on edges, then atoms on planes; where there are many, in the order in
+    /// Contacts as the sweeps see them: atoms on facets, then edges on edges, then atoms on obstacles; where there are many, in the order in
     /// which they are swept.
     pub rows: Vec<Row>,
     /// Whether they stand in that order.

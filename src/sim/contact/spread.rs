@@ -11,7 +11,7 @@ use crate::sim::controls::Controls;
 /// Whether any surfaces in contact release energy.
 pub fn releases_energy(model: &ContactScene) -> bool {
     let releases = |strength: &Strength| strength.energy > 0.0;
-    model.between.iter().chain(&model.on_planes).any(releases)
+    model.between.iter().chain(&model.on_obstacles).any(releases)
 }
 
 /// Adds the forces of the energy that contacts release, eq. (adhesion.9), to those of all atoms. `relief` is scratch, one number an
@@ -70,10 +70,10 @@ fn relieve(model: &ContactScene, found: &Contacts, controls: &Controls, relief: 
             *relief = relief.max(energy);
         }
     }
-    for contact in &found.planes {
+    for contact in &found.obstacles {
         let body = body_of(contact.atom);
         let of_atom = controls.adhesion_of_atom(contact.atom);
-        let energy = model.strength_on(body, contact.plane).energy * of_atom * controls.adhesion_of(body);
+        let energy = model.strength_on(body, contact.obstacle).energy * of_atom * controls.adhesion_of(body);
         let relief = &mut relief[contact.atom as usize];
         *relief = relief.max(energy);
     }

@@ -36,13 +36,13 @@ pub struct EdgeBond {
     pub force: [f32; 3],
 }
 
-/// An atom that touches a plane.
+/// An atom that touches an obstacle.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct PlaneBond {
+pub struct ObstacleBond {
     /// The atom, numbered through all cells.
     pub atom: u32,
-    /// The plane.
-    pub plane: u32,
+    /// The obstacle.
+    pub obstacle: u32,
     /// Force on the atom, pN.
     pub force: [f32; 3],
     /// What went into its compliance and has not come back, pN·µm, eq. (adhesion.5).
@@ -65,8 +65,8 @@ pub struct Link {
 pub enum Faced {
     /// Another body.
     Body(u32),
-    /// A plane.
-    Plane(u32),
+    /// An obstacle.
+    Obstacle(u32),
 }
 
 /// Bonds of a part of a surface to what it faces, eq. (adhesion.22).
@@ -102,8 +102,8 @@ pub struct ContactState {
     pub atoms: Vec<AtomBond>,
     /// Edges on edges.
     pub edges: Vec<EdgeBond>,
-    /// Atoms on planes.
-    pub planes: Vec<PlaneBond>,
+    /// Atoms on obstacles.
+    pub obstacles: Vec<ObstacleBond>,
     /// Links between facets, in their order; under other laws none.
     pub links: Vec<Link>,
     /// Atoms of virtual adhesives, adhesive by adhesive; under other laws none.
@@ -126,7 +126,7 @@ pub struct Numbered {
     /// Edges of all bodies.
     pub edges: usize,
     /// Planes.
-    pub planes: usize,
+    pub obstacles: usize,
 }
 
 impl ContactState {
@@ -135,7 +135,7 @@ impl ContactState {
         let are = |numbers: &[u32], most: usize| numbers.iter().all(|number| (*number as usize) < most);
         let is_faced = |other: Faced| match other {
             Faced::Body(body) => are(&[body], there.bodies),
-            Faced::Plane(plane) => are(&[plane], there.planes),
+            Faced::Obstacle(obstacle) => are(&[obstacle], there.obstacles),
         };
         let is_joined = |link: &Link| {
             are(&link.facets, there.facets)
@@ -144,7 +144,10 @@ impl ContactState {
         };
         self.atoms.iter().all(|bond| are(&[bond.atom], there.atoms) && are(&[bond.facet], there.facets))
             && self.edges.iter().all(|bond| are(&bond.edges, there.edges))
-            && self.planes.iter().all(|bond| are(&[bond.atom], there.atoms) && are(&[bond.plane], there.planes))
+            && self
+                .obstacles
+                .iter()
+                .all(|bond| are(&[bond.atom], there.atoms) && are(&[bond.obstacle], there.obstacles))
             && self.links.iter().all(is_joined)
             && self.adhesives.iter().all(|one| are(&[one.adhesive, one.atom], there.atoms))
             && are(&self.released, there.atoms)
@@ -155,6 +158,6 @@ impl ContactState {
     /// stick.
     pub fn stored(&self) -> f64 {
         let of_atoms = self.atoms.iter().map(|bond| f64::from(bond.stored));
-        of_atoms.chain(self.planes.iter().map(|bond| f64::from(bond.stored))).sum()
+        of_atoms.chain(self.obstacles.iter().map(|bond| f64::from(bond.stored))).sum()
     }
 }

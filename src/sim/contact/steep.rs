@@ -15,10 +15,10 @@ const BESIDE_SHAPES: f64 = 0.2;
 const BESIDE_DRAG: f64 = 1.5;
 
 /// Whether forces of the law change so much as cells move in a step of `dt` (s) that its matrix must know; `stiffenings` are those of the
-/// kinds. By what the document says of strengths and ranges, whatever chemistry makes of them. Never where there are planes: what holds cells on
+/// kinds. By what the document says of strengths and ranges, whatever chemistry makes of them. Never where there are obstacles: what holds cells on
 /// these is found for each cell by itself, and would have to be found anew with what others do.
 pub fn are_steep(model: &Model, dt: f64, stiffenings: impl Iterator<Item = f64>) -> bool {
-    let Some(contact) = model.contact.as_ref().filter(|_| model.planes.is_empty()) else { return false };
+    let Some(contact) = model.contact.as_ref().filter(|_| model.obstacles.is_empty()) else { return false };
     let steepest = contact.law.steepest();
     let mut kinds = model.kinds.iter().zip(&contact.areas).zip(stiffenings);
     kinds.any(|((kind, areas), stiffening)| {

@@ -65,15 +65,15 @@ fn find_shear(contact: &ContactScene, controls: &Controls, s: &ContactScratch, s
         let (row, pull) = of_row(number);
         add((row, pull), on(row));
     }
-    for (number, near) in (of_edges..).zip(&s.found.planes) {
-        add(of_row(number), Faced::Plane(near.plane));
+    for (number, near) in (of_edges..).zip(&s.found.obstacles) {
+        add(of_row(number), Faced::Obstacle(near.obstacle));
     }
     // Rows of what rubs without touching stand after those of contacts, in the order of what faces something.
     let mut rubbing = facing.iter().filter(|this| rubs(contact, &s.found, this) > 0.0);
-    for number in of_edges + s.found.planes.len()..s.rows.len() {
+    for number in of_edges + s.found.obstacles.len()..s.rows.len() {
         let (row, pull) = of_row(number);
         let is_of = |this: &&Facing| match row.pairing {
-            Pairing::AtomOnPlane => this.atom == row.atoms[0] && matches!(this.other, Faced::Plane(_)),
+            Pairing::AtomOnObstacle => this.atom == row.atoms[0] && matches!(this.other, Faced::Obstacle(_)),
             _ => this.atom == row.atoms[0] && this.other == on(row),
         };
         if let Some(this) = rubbing.find(is_of) {
@@ -99,7 +99,7 @@ fn bonds_around(contact: &ContactScene, controls: &Controls, this: &Facing) -> f
         contact.cohesion_of(body, this.other).and_then(|cohesive| cohesive.bonds).map_or(0.0, |it| it.density);
     let of_other = match this.other {
         Faced::Body(other) => SHARE * controls.adhesion_of(other as usize),
-        Faced::Plane(_) => 1.0,
+        Faced::Obstacle(_) => 1.0,
     };
     density * this.area * controls.adhesion_of(body as usize) * controls.adhesion_of_atom(this.atom) * of_other
 }

@@ -48,7 +48,7 @@ pub(super) fn links(
 ) {
     let before = faults.len();
     let mut links: Vec<(Link, Location)> = Vec::new();
-    let planes: Vec<&str> = document.experiment.planes.iter().map(|plane| plane.name.as_str()).collect();
+    let planes: Vec<&str> = document.experiment.obstacles().collect();
     for part in parts.iter().filter(|part| part.document.scene.is_none()) {
         let mut shown = Vec::new();
         let described = part.document.links.iter().map(|link| (link.clone(), Ok(link.location.clone())));

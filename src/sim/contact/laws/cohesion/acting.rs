@@ -136,7 +136,7 @@ fn add(
 fn note(patch: &Patch, pull: &PatchPull, noted: &mut ContactTractions) {
     let own = patch.own.into_iter().zip(pull.on_own);
     match patch.other {
-        Partner::Plane(_) => own.for_each(|(atom, force)| noted.by_plane(atom, force)),
+        Partner::Obstacle(_) => own.for_each(|(atom, force)| noted.by_obstacle(atom, force)),
         Partner::Facet(atoms, _) => {
             own.chain(atoms.into_iter().zip(pull.on_other)).for_each(|(atom, force)| noted.by_cell(atom, force));
         }

@@ -22,7 +22,7 @@ type OfBatch = (Around, Vec<(u32, u32, f64)>);
 
 impl CohesionTable {
     /// Adds the areas of contact where all surfaces look alike at these positions: a body, then another one, or the number of bodies and
-    /// that of a plane, the first less than the second, and the area that the first has of it, µm². Parts of a surface count where the
+    /// that of an obstacle, the first less than the second, and the area that the first has of it, µm². Parts of a surface count where the
     /// opening to the other is less than the range, as seen from there, and for the nearest of several alone.
     pub fn add_areas(
         &self,
@@ -44,7 +44,7 @@ impl CohesionTable {
                     let area = patch.area_within(scene, positions);
                     let (other, area) = match patch.other {
                         Partner::Facet([atom, ..], _) => (scene.body_of_atom(atom), 0.5 * area),
-                        Partner::Plane(plane) => (bodies + plane, area),
+                        Partner::Obstacle(obstacle) => (bodies + obstacle, area),
                     };
                     match areas[first..].iter_mut().find(|known| known.1 == other) {
                         Some(known) => known.2 += area,

@@ -4,7 +4,7 @@ use super::patch::part_that_faces;
 use super::points::points_of_facet;
 use super::*;
 use crate::contact::test_scenes::{Stage, packed_stage};
-use crate::contact::{Opening, Plane, Reach, Shape, Sides, opening_to_facet, opening_to_plane};
+use crate::contact::{Opening, Reach, Shape, Sides, opening_to_facet, opening_to_plane};
 use crate::geometry::{Surface, icosphere, sheet, volume};
 
 const REACH: Reach = Reach { proximity: 0.1, depth: 0.1, margin: 0.1 };
@@ -12,16 +12,16 @@ const REACH: Reach = Reach { proximity: 0.1, depth: 0.1, margin: 0.1 };
 /// What is near enough to be in contact, µm.
 const WITHIN: f64 = 0.3;
 
-fn stage(surfaces: &[(Surface, Sides)], planes: Vec<Plane>) -> Stage {
+fn stage(surfaces: &[(Surface, Sides)], obstacles: Vec<Obstacle>) -> Stage {
     let shapes: Vec<Shape> = surfaces.iter().map(|(rest, sides)| Shape::new(rest, *sides, 0.15)).collect();
-    let scene = Scene::new(shapes, &(0..surfaces.len()).collect::<Vec<_>>(), planes, REACH);
+    let scene = Scene::new(shapes, &(0..surfaces.len()).collect::<Vec<_>>(), obstacles, REACH);
     Stage { scene, positions: surfaces.iter().flat_map(|(rest, _)| rest.positions.iter().copied()).collect() }
 }
 
 /// Areas of pairs, in their order; `edge` is the mean edge of all shapes, µm.
 fn areas(stage: &Stage, edge: f64) -> Vec<(u32, u32, f64)> {
     let Stage { scene, positions } = stage;
-    let table = CohesionTable::alike(&vec![edge; scene.shapes.len()], scene.planes.len(), WITHIN);
+    let table = CohesionTable::alike(&vec![edge; scene.shapes.len()], scene.obstacles.len(), WITHIN);
     let mut all = Vec::new();
     table.add_areas(scene, positions, &mut AreaScratch::default(), &mut all);
     all.sort_by_key(|(one, other, _)| (*one, *other));
@@ -59,8 +59,8 @@ fn areas_by_all(stage: &Stage, parts: u32) -> Vec<(u32, u32, f64)> {
                     }
                 }
             }
-            for (number, plane) in (bodies..).zip(&scene.planes) {
-                let opening = opening_to_plane(n, (x - plane.point).dot(&plane.normal), plane.normal);
+            for (number, obstacle) in (bodies..).zip(&scene.obstacles) {
+                let opening = opening_to_plane(n, (x - obstacle.point).dot(&obstacle.normal), obstacle.normal);
                 if let Some((width, towards)) = opening
                     && width < best.0
                 {
@@ -86,14 +86,14 @@ fn sum(areas: &[(u32, u32, f64)]) -> Vec<(u32, u32, f64)> {
 
 #[test]
 fn they_are_those_of_a_search_of_all_facets() {
-    let (mut pairs, mut on_planes) = (0, 0);
+    let (mut pairs, mut on_obstacles) = (0, 0);
     for number in 0..6 {
         let mut stage = packed_stage(8, REACH, number);
-        stage.scene.planes = vec![Plane { point: Vec3::z() * -0.85, normal: Vec3::z() }];
+        stage.scene.obstacles = vec![Obstacle::Plane { point: Vec3::z() * -0.85, normal: Vec3::z() }];
         // Four points a facet.
         let (found, wanted) = (sum(&areas(&stage, WITHIN)), sum(&areas_by_all(&stage, 2)));
         let bodies = stage.scene.bodies.len() as u32;
-        on_planes += wanted.iter().filter(|one| one.1 >= bodies).count();
+        on_obstacles += wanted.iter().filter(|one| one.1 >= bodies).count();
         pairs += wanted.len();
         assert_eq!(found.len(), wanted.len(), "scene {number}: {found:?} {wanted:?}");
         for (found, wanted) in found.iter().zip(&wanted) {
@@ -101,7 +101,7 @@ fn they_are_those_of_a_search_of_all_facets() {
             assert!((found.2 - wanted.2).abs() < 1e-9 * (1.0 + wanted.2), "scene {number}: {found:?} {wanted:?}");
         }
     }
-    assert!(pairs > 60 && on_planes > 10, "{pairs} {on_planes}");
+    assert!(pairs > 60 && on_obstacles > 10, "{pairs} {on_obstacles}");
 }
 
 /// Radius of the flat disc of a drop between plates, and of its rim, µm: about the volume of a ball of 5 µm.
@@ -138,21 +138,21 @@ fn area_of_contact(apart: impl Fn(f64) -> f64, part: impl Fn(f64) -> f64) -> f64
 
 #[test]
 fn drops_pressed_on_planes_and_each_other_have_the_area_of_theory() {
-    // A plane is met at the angle of the rim, another drop at twice that.
-    let on_plane =
+    // An obstacle is met at the angle of the rim, another drop at twice that.
+    let on_obstacle =
         area_of_contact(|at| 2.0 * RIM * (1.0 - at.cos()) / (1.0 + at.cos()), |at| (2.0 * at.cos()).min(1.0));
     let between =
         area_of_contact(|at| 2.0 * RIM * (1.0 - at.cos()) / at.cos(), |at| (2.0 * (2.0 * at).cos()).clamp(0.0, 1.0));
     for (level, edge) in [(2, 1.5), (3, 0.76)] {
         let height = drop_between_plates(level).positions.iter().map(|x| x.z).fold(0.0, f64::max);
-        let planes = vec![
-            Plane { point: Vec3::zeros(), normal: Vec3::z() },
-            Plane { point: Vec3::z() * height, normal: -Vec3::z() },
+        let obstacles = vec![
+            Obstacle::Plane { point: Vec3::zeros(), normal: Vec3::z() },
+            Obstacle::Plane { point: Vec3::z() * height, normal: -Vec3::z() },
         ];
-        let found = sum(&areas(&stage(&[(drop_between_plates(level), Sides::Outer)], planes), edge));
+        let found = sum(&areas(&stage(&[(drop_between_plates(level), Sides::Outer)], obstacles), edge));
         assert_eq!(found.len(), 2);
-        for (_, plane, area) in found {
-            assert!((area / on_plane - 1.0).abs() < 0.05, "{level}, {plane}: {area} of {on_plane}");
+        for (_, obstacle, area) in found {
+            assert!((area / on_obstacle - 1.0).abs() < 0.05, "{level}, {obstacle}: {area} of {on_obstacle}");
         }
         let mut other = drop_between_plates(level);
         // Turned about the axis, so that facets do not match, and below.
@@ -174,11 +174,11 @@ fn a_share_of_a_surface_counts_for_its_nearest_neighbour_alone() {
         (flat, Sides::Both)
     };
     // 0.1 µm apart, 0.1 µm above a floor and 0.4 µm below what looks down on them: each face has one neighbour or none.
-    let planes = vec![
-        Plane { point: Vec3::z() * -0.1, normal: Vec3::z() },
-        Plane { point: Vec3::z() * 0.6, normal: -Vec3::z() },
+    let obstacles = vec![
+        Obstacle::Plane { point: Vec3::z() * -0.1, normal: Vec3::z() },
+        Obstacle::Plane { point: Vec3::z() * 0.6, normal: -Vec3::z() },
     ];
-    let found = sum(&areas(&stage(&[at(0.0), at(0.1), at(0.2)], planes), 1.0));
+    let found = sum(&areas(&stage(&[at(0.0), at(0.1), at(0.2)], obstacles), 1.0));
     let wanted = [(0, 1, 16.0), (0, 3, 16.0), (1, 2, 16.0)];
     assert_eq!(found.len(), wanted.len(), "{found:?}");
     for (found, wanted) in found.iter().zip(wanted) {

@@ -9,7 +9,7 @@ pub struct Attracted {
     pub released: f64,
     /// How far it is open, µm.
     pub width: f64,
-    /// Of facets and then planes, numbered through all.
+    /// Of facets and then obstacles, numbered through all.
     pub number: u32,
     /// Of the point's side, pN/µm².
     pub strength: f64,

@@ -16,7 +16,7 @@ pub struct Facing {
     /// What of the area in contact is nearest to it, µm²; where surfaces have bonds, what of it is bound.
     pub area: f64,
     /// The atoms of a facet of the other body before the part of that area that weighs most, in the order in which its normal points to
-    /// the atom; of a plane the atom itself.
+    /// the atom; of an obstacle the atom itself.
     pub facet: [u32; 3],
     /// What that part weighs, µm².
     most: f64,

@@ -3,6 +3,7 @@
 use super::super::super::vectors::gather_corners;
 use crate::Vec3;
 use crate::contact::{Feature, Opening, Scene, opening_to_feature, opening_to_plane};
+use crate::geometry::Beside;
 use crate::sim::contact::state::Faced;
 
 /// A part of a facet that another surface attracts: forces of both are those of an energy of the positions of their atoms.
@@ -10,7 +11,7 @@ use crate::sim::contact::state::Faced;
 pub struct Patch {
     /// The atoms of its facet, in the order in which its normal points to the other surface.
     pub own: [u32; 3],
-    /// The atoms of the facet that attracts it, or a plane.
+    /// The atoms of the facet that attracts it, or an obstacle.
     pub other: Partner,
     /// Barycentric weights of its middle.
     pub weights: &'static [f64; 3],
@@ -27,8 +28,8 @@ pub struct Patch {
 pub enum Partner {
     /// What of a facet, by its atoms in the order in which its normal points to the patch.
     Facet([u32; 3], Feature),
-    /// A plane.
-    Plane(u32),
+    /// An obstacle.
+    Obstacle(u32),
 }
 
 impl Partner {
@@ -36,7 +37,7 @@ impl Partner {
     pub fn atoms(&self) -> Option<[u32; 3]> {
         match self {
             Self::Facet(atoms, _) => Some(*atoms),
-            Self::Plane(_) => None,
+            Self::Obstacle(_) => None,
         }
     }
 }
@@ -103,9 +104,9 @@ impl Patch {
                 let m = (corners[1] - corners[0]).cross(&(corners[2] - corners[0])).try_normalize(0.0)?;
                 opening_to_feature(x, n, &corners, m, feature)?
             }
-            Partner::Plane(plane) => {
-                let plane = &scene.planes[plane as usize];
-                let (width, towards) = opening_to_plane(n, (x - plane.point).dot(&plane.normal), plane.normal)?;
+            Partner::Obstacle(obstacle) => {
+                let Beside { gap, normal } = scene.obstacles[obstacle as usize].beside(&x);
+                let (width, towards) = opening_to_plane(n, gap, normal)?;
                 Opening { width, weights: [0.0; 3], towards }
             }
         };
@@ -116,7 +117,7 @@ impl Patch {
     pub fn faces(&self, scene: &Scene) -> Faced {
         match self.other {
             Partner::Facet([atom, ..], _) => Faced::Body(scene.body_of_atom(atom)),
-            Partner::Plane(plane) => Faced::Plane(plane),
+            Partner::Obstacle(obstacle) => Faced::Obstacle(obstacle),
         }
     }
 

@@ -10,7 +10,8 @@ use super::patch::{Partner, Patch};
 use super::points::points_of_facet;
 use super::table::CohesionTable;
 use crate::Vec3;
-use crate::contact::{Near, Plane, Scene, opening_to_plane};
+use crate::contact::{Near, Scene, opening_to_plane};
+use crate::geometry::{Beside, Obstacle};
 use crate::sim::controls::Controls;
 
 /// All surfaces at an instant.
@@ -72,8 +73,8 @@ impl Seen<'_> {
         for (facet, near) in (of.first_facet..).zip(near) {
             let Facet { normal, middle, radius } = self.facets[facet as usize];
             let known = known.next().unwrap_or_default();
-            let is_near = |plane: &Plane| (middle - plane.point).dot(&plane.normal) < self.range + radius;
-            if near.facets.is_empty() && !scene.planes.iter().any(is_near) {
+            let is_near = |obstacle: &Obstacle| obstacle.gap(&middle) < self.range + radius;
+            if near.facets.is_empty() && !scene.obstacles.iter().any(is_near) {
                 known.fill(UNKNOWN);
                 continue;
             }
@@ -105,7 +106,7 @@ impl Seen<'_> {
     fn adhesion_of(&self, own: [u32; 3], weights: &[f64; 3], other: Partner) -> f64 {
         let of_other = match other {
             Partner::Facet(atoms, _) => self.controls.adhesion_between(atoms, [1.0 / 3.0; 3]),
-            Partner::Plane(_) => 1.0,
+            Partner::Obstacle(_) => 1.0,
         };
         self.controls.adhesion_between(own, *weights) * of_other
     }
@@ -118,7 +119,7 @@ impl Seen<'_> {
         Attracting { body: other, strength: 0.5 * factors * cohesive.strength, range: cohesive.range() }
     }
 
-    /// Finds what attracts the points of a facet of a body most of the facets that are known to have done so, and of planes.
+    /// Finds what attracts the points of a facet of a body most of the facets that are known to have done so, and of obstacles.
     fn look_at_known(&self, body: u32, known: &[u32], around: &mut Around) {
         let Around { points, pairs, most, .. } = around;
         most.clear();
@@ -133,7 +134,7 @@ impl Seen<'_> {
         }
         pairs.look(most);
         for (most, at) in most.iter_mut().zip(points) {
-            *most = more(*most, self.of_planes(body, *at));
+            *most = more(*most, self.of_obstacles(body, *at));
         }
     }
 
@@ -193,16 +194,17 @@ impl Seen<'_> {
         SeenFacet { number: facet, atoms, corners: gather_corners(self.positions, atoms), normal }
     }
 
-    /// What of the planes attracts a point of a body most.
-    fn of_planes(&self, body: u32, (x, n): (Vec3, Vec3)) -> Option<Attracted> {
+    /// What of the obstacles attracts a point of a body most.
+    fn of_obstacles(&self, body: u32, (x, n): (Vec3, Vec3)) -> Option<Attracted> {
         let kind = self.scene.bodies[body as usize].shape as usize;
-        let planes = (0..).zip(&self.scene.planes).filter_map(|(number, plane)| {
-            let cohesive = self.table.on_planes[kind * self.scene.planes.len() + number as usize];
+        let obstacles = (0..).zip(&self.scene.obstacles).filter_map(|(number, obstacle)| {
+            let cohesive = self.table.on_obstacles[kind * self.scene.obstacles.len() + number as usize];
             let strength = self.controls.adhesion_of(body as usize) * cohesive.strength;
             let by = Attracting { body, strength, range: cohesive.range() };
-            let (width, _) = opening_to_plane(n, (x - plane.point).dot(&plane.normal), plane.normal)?;
-            by.attracted(self.facets.len() as u32 + number, width, Partner::Plane(number))
+            let Beside { gap, normal } = obstacle.beside(&x);
+            let (width, _) = opening_to_plane(n, gap, normal)?;
+            by.attracted(self.facets.len() as u32 + number, width, Partner::Obstacle(number))
         });
-        planes.fold(None, |most, found| more(most, Some(found)))
+        obstacles.fold(None, |most, found| more(most, Some(found)))
     }
 }

@@ -35,7 +35,7 @@ pub struct Slope {
 }
 
 impl Patch {
-    /// How what it does changes as it moves from where the atoms are; none where nothing holds it, and on planes.
+    /// How what it does changes as it moves from where the atoms are; none where nothing holds it, and on obstacles.
     pub fn slope(&self, scene: &Scene, now: &[Vec3]) -> Option<Slope> {
         let (Opening { width, weights, towards: q }, twice, sides, n) = self.opening(scene, now)?;
         let (t, area, squared) = (width / self.range, 0.5 * twice.norm(), q.norm_squared());
@@ -51,7 +51,7 @@ impl Patch {
             }
             // What is touched of a face slides along it wherever it likes.
             Partner::Facet(_, Feature::Face) => (0.0, None),
-            Partner::Plane(_) => return None,
+            Partner::Obstacle(_) => return None,
         };
         let slope = Slope { along, across, towards: q, normal: n, rise: width / squared, weights, sides, area, slides };
         (along > 0.0 || across > 0.0).then_some(slope)

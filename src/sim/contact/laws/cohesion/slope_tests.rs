@@ -24,7 +24,7 @@ fn rough() -> (Scene, Vec<Vec3>, CohesionScratch) {
     };
     let mut surfaces = vec![(icosphere(3.0, 1), Sides::Outer), ball, lid(9.0), lid(9.2)];
     surfaces.extend((0..16).map(grain));
-    let floor = crate::contact::Plane { point: -3.05 * Vec3::z(), ..floor() };
+    let floor = crate::geometry::Obstacle::Plane { point: -3.05 * Vec3::z(), normal: Vec3::z() };
     let (table, scene, mut positions) = scene(&surfaces, vec![floor], GLUE);
     let by = random(0.08, positions.len(), 3);
     positions.iter_mut().zip(by).for_each(|(x, by)| *x += by);

@@ -30,8 +30,8 @@ impl Cohesive {
 pub struct CohesionTable {
     /// Of two kinds: `between[kind * kinds + other]`, symmetric.
     pub between: Vec<Cohesive>,
-    /// Of a kind and a plane: `on_planes[kind * planes + plane]`.
-    pub on_planes: Vec<Cohesive>,
+    /// Of a kind and an obstacle: `on_obstacles[kind * obstacles + obstacle]`.
+    pub on_obstacles: Vec<Cohesive>,
     /// Points along a side of the facets of each kind, eq. (adhesion.18).
     pub points: Vec<u32>,
     /// Whether anything that sticks resists sliding, so that areas around atoms are needed.
@@ -51,22 +51,22 @@ fn points_along(edge: f64, range: f64, attracts: bool) -> u32 {
 
 impl CohesionTable {
     /// A table in which nothing sticks.
-    pub fn new(kinds: usize, planes: usize) -> Self {
+    pub fn new(kinds: usize, obstacles: usize) -> Self {
         let none = Cohesive::default();
         Self {
             between: vec![none; kinds * kinds],
-            on_planes: vec![none; kinds * planes],
+            on_obstacles: vec![none; kinds * obstacles],
             points: vec![1; kinds],
             resists: true,
         }
     }
 
     /// A table in which all that is less than `range` (µm) apart is alike, of kinds with these mean edges (µm): to measure areas of contact.
-    pub fn alike(edges: &[f64], planes: usize, range: f64) -> Self {
-        let mut table = Self::new(edges.len(), planes);
+    pub fn alike(edges: &[f64], obstacles: usize, range: f64) -> Self {
+        let mut table = Self::new(edges.len(), obstacles);
         let cohesive = Cohesive { strength: 1.0, work: 0.5 * range, ..Cohesive::default() };
         table.between.fill(cohesive);
-        table.on_planes.fill(cohesive);
+        table.on_obstacles.fill(cohesive);
         table.resolve_for(edges, false);
         table
     }
@@ -78,10 +78,10 @@ impl CohesionTable {
         self.between[other * kinds + kind] = cohesive;
     }
 
-    /// Sets how a kind sticks to a plane.
-    pub fn stick_to_plane(&mut self, kind: usize, plane: usize, cohesive: Cohesive) {
-        let planes = self.on_planes.len() / self.points.len();
-        self.on_planes[kind * planes + plane] = cohesive;
+    /// Sets how a kind sticks to an obstacle.
+    pub fn stick_to_obstacle(&mut self, kind: usize, obstacle: usize, cohesive: Cohesive) {
+        let obstacles = self.on_obstacles.len() / self.points.len();
+        self.on_obstacles[kind * obstacles + obstacle] = cohesive;
     }
 
     /// Looks as finely at the facets of each kind, with these mean edges (µm), as its least range needs.
@@ -90,10 +90,11 @@ impl CohesionTable {
     }
 
     fn resolve_for(&mut self, edges: &[f64], attracts: bool) {
-        let (kinds, planes) = (edges.len(), self.on_planes.len() / edges.len().max(1));
+        let (kinds, obstacles) = (edges.len(), self.on_obstacles.len() / edges.len().max(1));
         for (kind, edge) in edges.iter().enumerate() {
             let between = &self.between[kind * kinds..(kind + 1) * kinds];
-            let ranges = between.iter().chain(&self.on_planes[kind * planes..(kind + 1) * planes]).map(Cohesive::range);
+            let ranges =
+                between.iter().chain(&self.on_obstacles[kind * obstacles..(kind + 1) * obstacles]).map(Cohesive::range);
             let least = ranges.filter(|range| *range > 0.0).fold(f64::INFINITY, f64::min);
             self.points[kind] = points_along(*edge, least, attracts);
         }
@@ -101,7 +102,7 @@ impl CohesionTable {
 
     /// The farthest that anything attracts, µm.
     pub(in super::super) fn range(&self) -> f64 {
-        self.between.iter().chain(&self.on_planes).map(Cohesive::range).fold(0.0, f64::max)
+        self.between.iter().chain(&self.on_obstacles).map(Cohesive::range).fold(0.0, f64::max)
     }
 
     /// The most that a pull between cells on an area grows with its opening, over 2, pN/µm³: as much as strength over range.
@@ -121,17 +122,17 @@ impl CohesionTable {
         let kind = |body: u32| scene.bodies[body as usize].shape as usize;
         match other {
             Faced::Body(other) => self.between[kind(body) * self.points.len() + kind(other)],
-            Faced::Plane(plane) => self.on_planes[kind(body) * scene.planes.len() + plane as usize],
+            Faced::Obstacle(obstacle) => self.on_obstacles[kind(body) * scene.obstacles.len() + obstacle as usize],
         }
     }
 
     /// Whether any surfaces have bonds that close and open.
     pub fn has_bonds(&self) -> bool {
-        self.between.iter().chain(&self.on_planes).any(|cohesive| cohesive.bonds.is_some())
+        self.between.iter().chain(&self.on_obstacles).any(|cohesive| cohesive.bonds.is_some())
     }
 
     /// Whether anything slides with friction.
     pub fn has_friction(&self) -> bool {
-        self.between.iter().chain(&self.on_planes).any(|cohesive| cohesive.friction > 0.0)
+        self.between.iter().chain(&self.on_obstacles).any(|cohesive| cohesive.friction > 0.0)
     }
 }

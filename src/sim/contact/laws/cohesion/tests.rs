@@ -3,25 +3,25 @@
 use super::patch::Partner;
 use super::*;
 use crate::contact::Sides;
-use crate::contact::{Plane, Reach, Shape};
+use crate::contact::{Reach, Shape};
 use crate::geometry::{Surface, facet_areas, icosphere, sheet};
 use crate::random::{Purpose, Stream};
 
 const REACH: Reach = Reach { proximity: 0.1, depth: 0.1, margin: 0.1 };
 
-/// Bodies of one kind each, all of which stick to each other and to planes alike.
+/// Bodies of one kind each, all of which stick to each other and to obstacles alike.
 pub(super) fn scene(
     surfaces: &[(Surface, Sides)],
-    planes: Vec<Plane>,
+    obstacles: Vec<Obstacle>,
     cohesive: Cohesive,
 ) -> (CohesionTable, Scene, Vec<Vec3>) {
     let shapes: Vec<Shape> = surfaces.iter().map(|(rest, sides)| Shape::new(rest, *sides, 0.15)).collect();
-    let mut table = CohesionTable::new(shapes.len(), planes.len());
+    let mut table = CohesionTable::new(shapes.len(), obstacles.len());
     table.between.fill(cohesive);
-    table.on_planes.fill(cohesive);
+    table.on_obstacles.fill(cohesive);
     table.points.fill(2);
     let positions = surfaces.iter().flat_map(|(rest, _)| rest.positions.iter().copied()).collect();
-    (table, Scene::new(shapes, &(0..surfaces.len()).collect::<Vec<_>>(), planes, REACH), positions)
+    (table, Scene::new(shapes, &(0..surfaces.len()).collect::<Vec<_>>(), obstacles, REACH), positions)
 }
 
 pub(super) fn moved(mut surface: Surface, by: Vec3) -> Surface {
@@ -35,8 +35,8 @@ pub(super) fn found(table: &CohesionTable, scene: &Scene, positions: &[Vec3]) ->
     found
 }
 
-pub(super) fn floor() -> Plane {
-    Plane { point: Vec3::zeros(), normal: Vec3::z() }
+pub(super) fn floor() -> Obstacle {
+    Obstacle::Plane { point: Vec3::zeros(), normal: Vec3::z() }
 }
 
 /// No bonds from before.
@@ -58,9 +58,9 @@ fn forces_are_the_gradient_of_the_energy_and_have_neither_sum_nor_torque() {
             *x += 0.2 * Vec3::new(a - 0.5, b - 0.5, c - 0.5);
         }
     }
-    for planes in [vec![], vec![Plane { point: Vec3::new(0.0, 0.0, -3.1), normal: Vec3::z() }]] {
-        let on_plane = !planes.is_empty();
-        let (table, scene, positions) = scene(&surfaces, planes, GLUE);
+    for obstacles in [vec![], vec![Obstacle::Plane { point: Vec3::new(0.0, 0.0, -3.1), normal: Vec3::z() }]] {
+        let on_obstacle = !obstacles.is_empty();
+        let (table, scene, positions) = scene(&surfaces, obstacles, GLUE);
         let mut found = found(&table, &scene, &positions);
         let mut force = vec![Vec3::zeros(); positions.len()];
         table.add_forces(&scene, &mut found, &positions, &mut force, None);
@@ -83,7 +83,7 @@ fn forces_are_the_gradient_of_the_energy_and_have_neither_sum_nor_torque() {
                 force[atom][axis]
             );
         }
-        if !on_plane {
+        if !on_obstacle {
             let torque: Vec3 = positions.iter().zip(&force).map(|(x, force)| x.cross(force)).sum();
             let sum: Vec3 = force.iter().sum();
             assert!(sum.norm() < 1e-11 && torque.norm() < 1e-10, "{sum} {torque}");
@@ -100,7 +100,7 @@ fn what_attracts_a_point_does_not_depend_on_what_did_before() {
         (moved(sheet(4.0, 4.0, 5, 5), Vec3::new(0.1, 0.0, -3.1)), Sides::Both),
     ];
     let (table, scene, mut positions) =
-        scene(&surfaces, vec![Plane { point: -4.0 * Vec3::z(), normal: Vec3::z() }], GLUE);
+        scene(&surfaces, vec![Obstacle::Plane { point: -4.0 * Vec3::z(), normal: Vec3::z() }], GLUE);
     let mut stream = Stream::new(5, Purpose::Placement, 0, 0);
     let (mut followed, mut changed, mut before) = (CohesionScratch::default(), 0, Vec::new());
     for _ in 0..12 {

@@ -38,7 +38,7 @@ impl AdhesiveScratch {
         self.make_bodies(scene, kinds, positions);
     }
 
-    /// Lists adhesives of two atoms and more; one on a plane may have a single one.
+    /// Lists adhesives of two atoms and more; one on an obstacle may have a single one.
     fn list(&mut self, before: &ContactState, time: f64) {
         reset(&mut self.number, self.roles.len(), NONE);
         for (number, old) in (0..).zip(&before.adhesives) {
@@ -91,8 +91,8 @@ impl AdhesiveScratch {
             let first = adhesive(numbers[0]);
             let weights = row.weights();
             let real = |i: usize| weights[i] != 0.0;
-            let on_plane = row.pairing == Pairing::AtomOnPlane;
-            let grounded = !on_plane || self.grounded[row.atoms[0] as usize];
+            let on_obstacle = row.pairing == Pairing::AtomOnObstacle;
+            let grounded = !on_obstacle || self.grounded[row.atoms[0] as usize];
             if first.is_none() || !grounded || (0..4).any(|i| real(i) && adhesive(numbers[i]) != first) {
                 continue;
             }
@@ -137,9 +137,9 @@ impl AdhesiveScratch {
             part(atom, near.normal.wide());
             facet.into_iter().for_each(|atom| part(atom, -near.normal.wide()));
         }
-        for near in &found.planes {
-            if glue.kappa_on(near.atom, near.plane) > 0.0 {
-                part(near.atom, scene.planes[near.plane as usize].normal);
+        for near in &found.obstacles {
+            if glue.kappa_on(near.atom, near.obstacle) > 0.0 {
+                part(near.atom, near.normal.wide());
             }
         }
         let roles = &self.roles;
@@ -149,7 +149,7 @@ impl AdhesiveScratch {
     }
 }
 
-/// Takes out adhesives of fewer than two atoms, but for those on a plane, and names the others by their least atom.
+/// Takes out adhesives of fewer than two atoms, but for those on an obstacle, and names the others by their least atom.
 fn keep_living(atoms: &mut Vec<AdhesiveAtom>, grounded: impl Fn(u32) -> bool) {
     let (mut from, mut to) = (0, 0);
     while from < atoms.len() {

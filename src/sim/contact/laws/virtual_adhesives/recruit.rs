@@ -30,10 +30,10 @@ impl Glue<'_> {
         ([body, other], if body == other { 0.0 } else { kappa })
     }
 
-    /// How well an atom is glued to a plane.
-    pub(super) fn kappa_on(&self, atom: u32, plane: u32) -> f64 {
+    /// How well an atom is glued to an obstacle.
+    pub(super) fn kappa_on(&self, atom: u32, obstacle: u32) -> f64 {
         let body = self.scene.body_of_atom(atom);
-        let kappa = self.table.on_planes[self.kind_of(body) * self.scene.planes.len() + plane as usize];
+        let kappa = self.table.on_obstacles[self.kind_of(body) * self.scene.obstacles.len() + obstacle as usize];
         kappa * self.controls.adhesion_of(body as usize)
     }
 
@@ -73,13 +73,15 @@ impl AdhesiveScratch {
                 glue.corners(near).into_iter().for_each(|atom| add(atom, kappa, pair, near.gap, pressed));
             }
         }
-        for near in &found.planes {
-            let kappa = glue.kappa_on(near.atom, near.plane);
+        for near in &found.obstacles {
+            let kappa = glue.kappa_on(near.atom, near.obstacle);
             if kappa > 0.0 {
-                let at = before.planes.partition_point(|bond| (bond.atom, bond.plane) < (near.atom, near.plane));
-                let same = before.planes.get(at).filter(|bond| (bond.atom, bond.plane) == (near.atom, near.plane));
+                let at =
+                    before.obstacles.partition_point(|bond| (bond.atom, bond.obstacle) < (near.atom, near.obstacle));
+                let same =
+                    before.obstacles.get(at).filter(|bond| (bond.atom, bond.obstacle) == (near.atom, near.obstacle));
                 let pressed = same.is_some_and(|bond| bond.force != [0.0; 3]);
-                let pair = [scene.body_of_atom(near.atom), scene.bodies.len() as u32 + near.plane];
+                let pair = [scene.body_of_atom(near.atom), scene.bodies.len() as u32 + near.obstacle];
                 add(near.atom, kappa, pair, near.gap, pressed);
                 self.grounded[near.atom as usize] = true;
             }

@@ -28,7 +28,7 @@ pub(super) struct Rigid {
     drag: f64,
     /// Inverse of the resistance to turning; nothing along what turns nothing.
     inverse: Matrix3<f64>,
-    /// Whether a plane holds it.
+    /// Whether an obstacle holds it.
     grounded: bool,
 }
 
@@ -113,7 +113,7 @@ impl Rigid {
         motion
     }
 
-    /// Whether a plane holds it.
+    /// Whether an obstacle holds it.
     pub(super) fn is_grounded(&self) -> bool {
         self.grounded
     }

@@ -47,7 +47,7 @@ pub struct AdhesiveScratch {
     pub(super) parent: Vec<u32>,
     /// The nearest two objects, and how near.
     pub(super) pair: Vec<([u32; 2], f64)>,
-    /// Atoms that touch a plane that sticks.
+    /// Atoms that touch an obstacle that sticks.
     pub(super) grounded: Vec<bool>,
 }
 
@@ -103,13 +103,13 @@ impl AdhesiveScratch {
         bodies.iter().map(align).fold(0.0, f64::max)
     }
 
-    /// Notes what cells do to adhesives in the attempt: to planes, where one holds the adhesive, else to the cells that are in it.
+    /// Notes what cells do to adhesives in the attempt: to obstacles, where one holds the adhesive, else to the cells that are in it.
     pub(in crate::sim::contact) fn note(&self, noted: &mut ContactTractions) {
         for body in &self.bodies {
             for number in body.range() {
                 let (atom, force) = (self.atoms[number].atom, self.forces[number] + self.aligning[number]);
                 match body.is_grounded() {
-                    true => noted.by_plane(atom, force),
+                    true => noted.by_obstacle(atom, force),
                     false => noted.by_cell(atom, force),
                 }
             }

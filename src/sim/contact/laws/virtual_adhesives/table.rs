@@ -6,8 +6,8 @@ pub struct AdhesiveTable {
     /// What an atom's own displacement in a step may differ from that of its adhesive, µm: `between[kind * kinds + other]`,
     /// symmetric; 0 glues nothing.
     pub between: Vec<f64>,
-    /// The same for kinds and planes: `on_planes[kind * planes + plane]`.
-    pub on_planes: Vec<f64>,
+    /// The same for kinds and obstacles: `on_obstacles[kind * obstacles + obstacle]`.
+    pub on_obstacles: Vec<f64>,
     /// Which adhesives merge.
     pub zones: Zones,
 }

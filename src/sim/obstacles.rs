@@ -1,13 +1,14 @@
-//! Rigid planes: no atom passes them, and the force with which a plane holds an atom is part of the implicit solve.
+//! Rigid obstacles: no atom passes them, and the force with which an obstacle holds an atom is part of the implicit solve.
 //!
-//! In a step the atoms that press on a plane are found by the active-set method, eq. (planes.1): with M the constrained
+//! In a step the atoms that press on an obstacle are found by the active-set method, eq. (planes.1): with M the constrained
 //! mobility of the cell (eq. step.4, step.5) and C the normals of the touching atoms, the reactions r ≥ 0 solve
-//! `C M Cᵀ r = −gap − C Y`. So a cell that rests on a plane is in exact balance, however large the step.
+//! `C M Cᵀ r = −gap − C Y`. So a cell that rests on an obstacle is in exact balance, however large the step.
 
 use super::kind::{Kind, VolumeRule};
 use super::model::Model;
 use super::pressure::pressure;
 use super::solver::{Stage, System, solve_block};
+use super::spots::{Spot, find_spots};
 use crate::Vec3;
 use crate::mechanics::lanes::LANES;
 
@@ -22,13 +23,15 @@ pub struct Scene<'a> {
     pub system: System<'a>,
     /// The stage of the step.
     pub stage: Stage,
+    /// When the step ends, s: obstacles that go are where they are then.
+    pub end: f64,
     /// γ of the scheme.
     pub gamma: f64,
     /// What forces of the stage count of what moves a cell as a whole.
     pub share: f64,
 }
 
-/// An atom closer to a plane than this part of an edge touches it: far below any deformation, far above round-off.
+/// An atom closer to an obstacle than this part of an edge touches it: far below any deformation, far above round-off.
 pub const TOUCH: f64 = 1e-9;
 
 /// By how much of what a whole rigid body gives way each of its atoms does by itself.
@@ -37,23 +40,25 @@ const YIELDING: f64 = 1e-9;
 /// Rounds of the active-set method; it ends in two or three, a cycle is cut here and the projection does the rest.
 const ROUNDS: usize = 12;
 
-/// Scratch of a block: empty until a cell of the block touches a plane, then kept.
+/// Scratch of a block: empty until a cell of the block touches an obstacle, then kept.
 #[derive(Debug, Clone, Default)]
 pub struct TouchScratch {
-    /// Forces of planes on atoms in the mean over the attempt, pN, of the shape of the positions of the block; empty where nobody asks or
+    /// Forces of obstacles on atoms in the mean over the attempt, pN, of the shape of the positions of the block; empty where nobody asks or
     /// nothing touches.
     pub reactions: Vec<f64>,
-    /// Pairs (atom, plane) that press now.
-    active: Vec<Pair>,
-    /// Pairs that a look at the gaps found.
-    found: Vec<Pair>,
-    /// Pairs whose column is known.
-    known: Vec<Pair>,
-    /// Which of these each active pair is.
+    /// Where the cell may touch.
+    spots: Vec<Spot>,
+    /// Numbers of spots that press now.
+    active: Vec<usize>,
+    /// Numbers of spots that a look at the gaps found.
+    found: Vec<usize>,
+    /// Numbers of spots whose column is known.
+    known: Vec<usize>,
+    /// Which of these each active spot is.
     numbers: Vec<usize>,
-    /// How the cell answers a unit reaction of each known pair: increments of all atoms, µm/pN.
+    /// How the cell answers a unit reaction of each known spot: increments of all atoms, µm/pN.
     columns: Vec<f64>,
-    /// Pressure that holds the volume meanwhile, 1/µm², of each known pair.
+    /// Pressure that holds the volume meanwhile, 1/µm², of each known spot.
     pressures: Vec<f64>,
     /// The matrix of the reactions and the right side beside it, row by row.
     system: Vec<f64>,
@@ -83,12 +88,9 @@ struct CellArrays {
     swell: Vec<f64>,
     free: Vec<f64>,
     moved: Vec<f64>,
-    /// Forces of planes, pN.
+    /// Forces of obstacles, pN.
     pressed: Vec<f64>,
 }
-
-/// An atom and a plane, by their numbers.
-type Pair = (usize, usize);
 
 impl TouchScratch {
     /// Writes NaN over all scratch numbers.
@@ -109,7 +111,7 @@ impl TouchScratch {
     }
 }
 
-/// Corrects the increments of the cells of a block that touch planes.
+/// Corrects the increments of the cells of a block that touch obstacles.
 pub fn correct_block(
     scene: &Scene,
     x: &[f64],
@@ -121,12 +123,14 @@ pub fn correct_block(
     pressure: &mut [f64],
     scratch: &mut TouchScratch,
 ) {
-    if scene.model.planes.is_empty() {
+    if scene.model.obstacles.is_empty() {
         return;
     }
     let lanes = scene.kind.lanes;
     for lane in 0..lanes {
-        find_touching(scene, lanes, lane, x, first, y, &mut scratch.active);
+        find_spots(scene.kind, &scene.model.obstacles, scene.end, |atom| at(x, lanes, lane, atom), &mut scratch.spots);
+        let end = |atom| end_of(scene.stage, at(first, lanes, lane, atom), at(y, lanes, lane, atom));
+        find_touching(scene, &scratch.spots, end, &mut scratch.active);
         if scratch.active.is_empty() {
             continue;
         }
@@ -174,19 +178,12 @@ fn end_of(stage: Stage, first: Vec3, y: Vec3) -> Vec3 {
     }
 }
 
-/// Finds the pairs that touch at the start of the step or would pass at its end.
-fn find_touching(scene: &Scene, lanes: usize, lane: usize, x: &[f64], first: &[f64], y: &[f64], pairs: &mut Vec<Pair>) {
-    let kind = scene.kind;
-    pairs.clear();
-    for (p, plane) in scene.model.planes.iter().enumerate() {
-        for atom in 0..kind.atoms() {
-            let gap = (at(x, lanes, lane, atom) - plane.point).dot(&plane.normal);
-            let end = end_of(scene.stage, at(first, lanes, lane, atom), at(y, lanes, lane, atom));
-            if gap <= TOUCH * kind.edge || gap + end.dot(&plane.normal) < 0.0 {
-                pairs.push((atom, p));
-            }
-        }
-    }
+/// Finds the spots that touch at the start of the step or would pass at its end, given how far atoms go.
+fn find_touching(scene: &Scene, spots: &[Spot], end: impl Fn(usize) -> Vec3, touching: &mut Vec<usize>) {
+    touching.clear();
+    let touches =
+        |spot: &Spot| spot.gap <= TOUCH * scene.kind.edge || spot.gap + spot.mean(&end).dot(&spot.normal) < 0.0;
+    touching.extend((0..spots.len()).filter(|number| touches(&spots[*number])));
 }
 
 /// Finds the reactions of one cell; its increments are left in `moved`. Returns their part of the pressure.
@@ -202,10 +199,10 @@ fn correct_cell(scene: &Scene, target: f64, s: &mut TouchScratch) -> f64 {
     for _ in 0..ROUNDS {
         let known = s.known.len();
         s.numbers.clear();
-        for pair in &s.active {
-            let number = s.known.iter().position(|other| other == pair).unwrap_or(s.known.len());
+        for spot in &s.active {
+            let number = s.known.iter().position(|other| other == spot).unwrap_or(s.known.len());
             if number == s.known.len() {
-                s.known.push(*pair);
+                s.known.push(*spot);
             }
             s.numbers.push(number);
         }
@@ -222,10 +219,11 @@ fn correct_cell(scene: &Scene, target: f64, s: &mut TouchScratch) -> f64 {
             let answer = &s.columns[column * size..(column + 1) * size];
             s.cell.moved.iter_mut().zip(answer).for_each(|(to, c)| *to += r * c);
             pressure += r * s.pressures[column];
-            let (atom, p) = s.known[column];
-            let normal = &scene.model.planes[p].normal;
-            let pressed = s.cell.pressed.iter_mut().skip(3 * atom);
-            pressed.zip(normal).for_each(|(pressed, n)| *pressed += r * n);
+            let spot = &s.spots[s.known[column]];
+            for (atom, share) in spot.parts() {
+                let pressed = s.cell.pressed.iter_mut().skip(3 * atom);
+                pressed.zip(&spot.normal).for_each(|(pressed, n)| *pressed += share * r * n);
+            }
         }
         if !change_active(scene, s) {
             break;
@@ -234,29 +232,27 @@ fn correct_cell(scene: &Scene, target: f64, s: &mut TouchScratch) -> f64 {
     pressure
 }
 
-/// Solves `C M Cᵀ r = −gap − C Y` for the active pairs, eq. (planes.1); r stands in the last column of the system.
+/// Solves `C M Cᵀ r = −gap − C Y` for the active spots, eq. (planes.1); r stands in the last column of the system.
 fn solve_reactions(scene: &Scene, s: &mut TouchScratch) -> bool {
     let (rows, size) = (s.active.len(), s.cell.x.len());
     let width = rows + 1;
     s.system.clear();
     s.system.resize(rows * width, 0.0);
-    for (i, &(atom, p)) in s.active.iter().enumerate() {
-        let plane = &scene.model.planes[p];
+    for (i, spot) in s.active.iter().map(|number| &s.spots[*number]).enumerate() {
+        let along = |values: &[f64]| spot.mean(|atom| vector_of(values, atom)).dot(&spot.normal);
         for (j, column) in s.numbers.iter().enumerate() {
-            let answer = &s.columns[column * size..];
-            s.system[i * width + j] = plane.normal.dot(&vector_of(answer, atom));
+            s.system[i * width + j] = along(&s.columns[column * size..]);
         }
-        let gap = (vector_of(&s.cell.x, atom) - plane.point).dot(&plane.normal);
         let already = match scene.stage {
-            Stage::First => -gap,
+            Stage::First => -spot.gap,
             // 3/2 Y₁ + 1/2 Y₂ closes the gap.
-            Stage::Second => -2.0 * gap - 3.0 * vector_of(&s.cell.first, atom).dot(&plane.normal),
+            Stage::Second => -2.0 * spot.gap - 3.0 * along(&s.cell.first),
         };
         if scene.kind.rigid.is_some() {
             // More atoms than a rigid body has motions share what holds it: as if each gave way a little.
             s.system[i * width + i] *= 1.0 + YIELDING;
         }
-        s.system[i * width + rows] = already - vector_of(&s.cell.free, atom).dot(&plane.normal);
+        s.system[i * width + rows] = already - along(&s.cell.free);
     }
     eliminate(rows, &mut s.system)
 }
@@ -286,36 +282,40 @@ fn eliminate(rows: usize, system: &mut [f64]) -> bool {
     true
 }
 
-/// Releases pairs that pull, takes up pairs that pass; tells whether the set changed.
+/// Releases spots that pull, takes up spots that pass; tells whether the set changed.
 fn change_active(scene: &Scene, s: &mut TouchScratch) -> bool {
     let (before, width) = (s.active.len(), s.active.len() + 1);
     let mut rows = 0..before;
     s.active.retain(|_| rows.next().is_none_or(|row| s.system[row * width + width - 1] >= 0.0));
     let released = s.active.len() < before;
-    find_touching(scene, 1, 0, &s.cell.x, &s.cell.first, &s.cell.moved, &mut s.found);
+    let c = &s.cell;
+    let end = |atom| end_of(scene.stage, vector_of(&c.first, atom), vector_of(&c.moved, atom));
+    find_touching(scene, &s.spots, end, &mut s.found);
     let mut grown = false;
-    for &pair in &s.found {
-        let plane = &scene.model.planes[pair.1];
-        let end = end_of(scene.stage, vector_of(&s.cell.first, pair.0), vector_of(&s.cell.moved, pair.0));
-        let gap = (vector_of(&s.cell.x, pair.0) + end - plane.point).dot(&plane.normal);
-        if gap < -TOUCH * scene.kind.edge && !s.active.contains(&pair) {
-            s.active.push(pair);
+    for &number in &s.found {
+        let spot = &s.spots[number];
+        let passes = spot.gap + spot.mean(end).dot(&spot.normal) < -TOUCH * scene.kind.edge;
+        if passes && !s.active.contains(&number) {
+            s.active.push(number);
             grown = true;
         }
     }
     released || grown
 }
 
-/// M n for the known pairs of atom and plane from a number on: how the whole cell moves under a unit reaction of each, its volume
+/// M n for the known spots from a number on: how the whole cell moves under a unit reaction of each, its volume
 /// constraint included.
 fn reach(scene: &Scene, target: f64, from: usize, s: &mut TouchScratch) {
     let (kind, size) = (scene.kind, s.cell.x.len());
     s.columns.resize(s.known.len() * size, 0.0);
-    let TouchScratch { known, columns, pressures, cell: c, copies, .. } = s;
+    let TouchScratch { spots, known, columns, pressures, cell: c, copies, .. } = s;
     let (known, columns) = (&known[from..], &mut columns[from * size..]);
-    for ((atom, p), column) in known.iter().zip(columns.chunks_exact_mut(size)) {
+    for (number, column) in known.iter().zip(columns.chunks_exact_mut(size)) {
         column.fill(0.0);
-        column[3 * atom..3 * atom + 3].copy_from_slice(scene.model.planes[*p].normal.as_slice());
+        let spot = &spots[*number];
+        for (atom, share) in spot.parts() {
+            column[3 * atom..3 * atom + 3].copy_from_slice((share * spot.normal).as_slice());
+        }
     }
     copies.solve(kind, &scene.system, &c.x, columns);
     for column in columns.chunks_exact_mut(size) {
