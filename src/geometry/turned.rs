@@ -92,6 +92,12 @@ impl Turned {
         best
     }
 
+    /// A point of its surface, µm.
+    pub fn a_point(&self) -> Vec3 {
+        let [radius, height] = self.pieces[0].ends()[0];
+        self.point + radius * any_across(&self.axis) + height * self.axis
+    }
+
     /// Points of its profile, each a distance from the axis and a height, µm, as close to each other on arcs as pictures need.
     pub fn profile(&self) -> Vec<[f64; 2]> {
         let mut points: Vec<[f64; 2]> = self.pieces.iter().flat_map(|piece| piece.points(12.0)).collect();

@@ -1,7 +1,7 @@
 //! What the series of contacts promise, on pairs made by hand.
 
 use super::*;
-use crate::output::{Cell, CellType};
+use crate::output::{Cell, CellType, Obstacle};
 
 /// Two types above a floor.
 fn layout() -> Layout {

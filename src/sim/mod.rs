@@ -39,6 +39,7 @@ mod protrude;
 mod refresh;
 mod rest;
 mod rigid;
+mod rolling;
 mod scheme;
 pub mod seeding;
 mod settle;

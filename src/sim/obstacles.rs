@@ -6,7 +6,9 @@
 
 use super::kind::{Kind, VolumeRule};
 use super::model::Model;
+use super::obstacle::Obstacle;
 use super::pressure::pressure;
+use super::rolling::{Roll, add_rolls};
 use super::solver::{Stage, System, solve_block};
 use super::spots::{Spot, find_spots};
 use crate::Vec3;
@@ -60,7 +62,15 @@ pub struct TouchScratch {
     columns: Vec<f64>,
     /// Pressure that holds the volume meanwhile, 1/µm², of each known spot.
     pressures: Vec<f64>,
-    /// The matrix of the reactions and the right side beside it, row by row.
+    /// How what is held rolls on curved obstacles, lane by lane, as the first stage of a step finds it for both.
+    rolls: Vec<Vec<Roll>>,
+    /// Those of the cell that is corrected now.
+    rolling: Vec<Roll>,
+    /// How the cell answers a unit force along each of these, µm/pN.
+    roll_columns: Vec<f64>,
+    /// Pressure that holds the volume meanwhile, 1/µm².
+    roll_pressures: Vec<f64>,
+    /// The matrix of the reactions, with the forces of what rolls behind them, and the right side beside it, row by row.
     system: Vec<f64>,
     /// One cell's factor, gathered from the block.
     factor: Vec<f64>,
@@ -98,6 +108,8 @@ impl TouchScratch {
         let c = &mut self.cell;
         for array in
             [&mut self.columns, &mut self.pressures, &mut self.system, &mut self.factor, &mut c.x, &mut c.first]
+                .into_iter()
+                .chain([&mut self.roll_columns, &mut self.roll_pressures])
         {
             array.fill(f64::NAN);
         }
@@ -127,10 +139,19 @@ pub fn correct_block(
         return;
     }
     let lanes = scene.kind.lanes;
+    scratch.rolls.resize(lanes, Vec::new());
     for lane in 0..lanes {
-        find_spots(scene.kind, &scene.model.obstacles, scene.end, |atom| at(x, lanes, lane, atom), &mut scratch.spots);
+        find_spots_of_stage(
+            scene,
+            |atom| at(x, lanes, lane, atom),
+            |atom| at(first, lanes, lane, atom),
+            &mut scratch.spots,
+        );
         let end = |atom| end_of(scene.stage, at(first, lanes, lane, atom), at(y, lanes, lane, atom));
         find_touching(scene, &scratch.spots, end, &mut scratch.active);
+        if scene.stage == Stage::First {
+            scratch.rolls[lane].clear();
+        }
         if scratch.active.is_empty() {
             continue;
         }
@@ -141,7 +162,9 @@ pub fn correct_block(
         take_lane(y, lanes, lane, &mut c.free);
         let mut factor = std::mem::take(&mut scratch.factor);
         let of_cell = Scene { system: scene.system.of_lane(lane, &mut factor), ..*scene };
+        std::mem::swap(&mut scratch.rolling, &mut scratch.rolls[lane]);
         pressure[lane] += correct_cell(&of_cell, target[lane], scratch);
+        std::mem::swap(&mut scratch.rolling, &mut scratch.rolls[lane]);
         scratch.factor = factor;
         for (row, value) in y.chunks_exact_mut(lanes).zip(&scratch.cell.moved) {
             row[lane] = *value;
@@ -178,6 +201,16 @@ fn end_of(stage: Stage, first: Vec3, y: Vec3) -> Vec3 {
     }
 }
 
+/// Finds where a cell may touch in a stage: in the second on curved obstacles from where the first has led, its gap told as if straight from the start.
+fn find_spots_of_stage(scene: &Scene, x: impl Fn(usize) -> Vec3, first: impl Fn(usize) -> Vec3, spots: &mut Vec<Spot>) {
+    let obstacles = &scene.model.obstacles;
+    if scene.stage == Stage::First || obstacles.iter().all(Obstacle::is_flat) {
+        return find_spots(scene.kind, obstacles, scene.end, x, spots);
+    }
+    find_spots(scene.kind, obstacles, scene.end, |atom| x(atom) + first(atom), spots);
+    spots.iter_mut().for_each(|spot| spot.gap -= spot.mean(&first).dot(&spot.normal));
+}
+
 /// Finds the spots that touch at the start of the step or would pass at its end, given how far atoms go.
 fn find_touching(scene: &Scene, spots: &[Spot], end: impl Fn(usize) -> Vec3, touching: &mut Vec<usize>) {
     touching.clear();
@@ -189,13 +222,25 @@ fn find_touching(scene: &Scene, spots: &[Spot], end: impl Fn(usize) -> Vec3, tou
 /// Finds the reactions of one cell; its increments are left in `moved`. Returns their part of the pressure.
 fn correct_cell(scene: &Scene, target: f64, s: &mut TouchScratch) -> f64 {
     let size = s.cell.x.len();
-    let mut pressure = 0.0;
     s.known.clear();
     s.columns.clear();
     s.pressures.clear();
     s.cell.moved.clone_from(&s.cell.free);
     s.cell.pressed.clear();
     s.cell.pressed.resize(if scene.model.keeps_tractions { size } else { 0 }, 0.0);
+    answer_rolling(scene, target, s);
+    let pressure = settle_reactions(scene, target, s);
+    if scene.stage == Stage::Second || !find_rolling(scene, s) {
+        return pressure;
+    }
+    answer_rolling(scene, target, s);
+    settle_reactions(scene, target, s)
+}
+
+/// Finds which spots press, and moves the cell by what they do. Returns their part of the pressure.
+fn settle_reactions(scene: &Scene, target: f64, s: &mut TouchScratch) -> f64 {
+    let size = s.cell.x.len();
+    let mut pressure = 0.0;
     for _ in 0..ROUNDS {
         let known = s.known.len();
         s.numbers.clear();
@@ -213,7 +258,7 @@ fn correct_cell(scene: &Scene, target: f64, s: &mut TouchScratch) -> f64 {
         s.cell.moved.copy_from_slice(&s.cell.free);
         s.cell.pressed.fill(0.0);
         pressure = 0.0;
-        let width = s.active.len() + 1;
+        let (active, width) = (s.active.len(), s.active.len() + s.rolling.len() + 1);
         for (number, &column) in s.numbers.iter().enumerate() {
             let r = s.system[number * width + width - 1];
             let answer = &s.columns[column * size..(column + 1) * size];
@@ -221,9 +266,15 @@ fn correct_cell(scene: &Scene, target: f64, s: &mut TouchScratch) -> f64 {
             pressure += r * s.pressures[column];
             let spot = &s.spots[s.known[column]];
             for (atom, share) in spot.parts() {
-                let pressed = s.cell.pressed.iter_mut().skip(3 * atom);
-                pressed.zip(&spot.normal).for_each(|(pressed, n)| *pressed += share * r * n);
+                press(&mut s.cell.pressed, atom, share * r * spot.normal);
             }
+        }
+        for (number, roll) in s.rolling.iter().enumerate() {
+            let force = s.system[(active + number) * width + width - 1];
+            let answer = &s.roll_columns[number * size..(number + 1) * size];
+            s.cell.moved.iter_mut().zip(answer).for_each(|(to, c)| *to += force * c);
+            pressure += force * s.roll_pressures[number];
+            roll.parts.iter().for_each(|(atom, vector)| press(&mut s.cell.pressed, *atom, force * vector));
         }
         if !change_active(scene, s) {
             break;
@@ -232,16 +283,41 @@ fn correct_cell(scene: &Scene, target: f64, s: &mut TouchScratch) -> f64 {
     pressure
 }
 
-/// Solves `C M Cᵀ r = −gap − C Y` for the active spots, eq. (planes.1); r stands in the last column of the system.
+/// Notes a force of an obstacle on an atom, where somebody asks.
+fn press(pressed: &mut [f64], atom: usize, force: Vec3) {
+    pressed.iter_mut().skip(3 * atom).zip(&force).for_each(|(pressed, force)| *pressed += force);
+}
+
+/// Finds how what presses rolls; false where nothing does.
+fn find_rolling(scene: &Scene, s: &mut TouchScratch) -> bool {
+    s.rolling.clear();
+    let width = s.active.len() + 1;
+    for (row, number) in s.active.iter().enumerate() {
+        let (spot, reaction) = (&s.spots[*number], s.system.get(row * width + width - 1).copied().unwrap_or(0.0));
+        let obstacle = &scene.model.obstacles[spot.obstacle];
+        if reaction > 0.0 && !obstacle.is_flat() {
+            add_rolls(obstacle, scene.end, spot, reaction, |atom| vector_of(&s.cell.x, atom), &mut s.rolling);
+        }
+    }
+    !s.rolling.is_empty()
+}
+
+/// Solves `C M Cᵀ r = −gap − C Y` for the active spots, eq. (planes.1), together with the forces φ of what rolls, `q·Y = −φ/(γk)`; both stand in the
+/// last column of the system.
 fn solve_reactions(scene: &Scene, s: &mut TouchScratch) -> bool {
-    let (rows, size) = (s.active.len(), s.cell.x.len());
+    let (active, size) = (s.active.len(), s.cell.x.len());
+    let rows = active + s.rolling.len();
     let width = rows + 1;
     s.system.clear();
     s.system.resize(rows * width, 0.0);
+    let columns = || {
+        let of_spots = s.numbers.iter().map(|column| &s.columns[column * size..(column + 1) * size]);
+        of_spots.chain(s.roll_columns.chunks_exact(size).take(s.rolling.len()))
+    };
     for (i, spot) in s.active.iter().map(|number| &s.spots[*number]).enumerate() {
         let along = |values: &[f64]| spot.mean(|atom| vector_of(values, atom)).dot(&spot.normal);
-        for (j, column) in s.numbers.iter().enumerate() {
-            s.system[i * width + j] = along(&s.columns[column * size..]);
+        for (j, column) in columns().enumerate() {
+            s.system[i * width + j] = along(column);
         }
         let already = match scene.stage {
             Stage::First => -spot.gap,
@@ -253,6 +329,14 @@ fn solve_reactions(scene: &Scene, s: &mut TouchScratch) -> bool {
             s.system[i * width + i] *= 1.0 + YIELDING;
         }
         s.system[i * width + rows] = already - along(&s.cell.free);
+    }
+    for (i, roll) in (active..).zip(&s.rolling) {
+        let along = |values: &[f64]| roll.along(|atom| vector_of(values, atom));
+        for (j, column) in columns().enumerate() {
+            s.system[i * width + j] = along(column);
+        }
+        s.system[i * width + i] += 1.0 / (scene.gamma * roll.stiffness);
+        s.system[i * width + rows] = -along(&s.cell.free);
     }
     eliminate(rows, &mut s.system)
 }
@@ -284,7 +368,7 @@ fn eliminate(rows: usize, system: &mut [f64]) -> bool {
 
 /// Releases spots that pull, takes up spots that pass; tells whether the set changed.
 fn change_active(scene: &Scene, s: &mut TouchScratch) -> bool {
-    let (before, width) = (s.active.len(), s.active.len() + 1);
+    let (before, width) = (s.active.len(), s.active.len() + s.rolling.len() + 1);
     let mut rows = 0..before;
     s.active.retain(|_| rows.next().is_none_or(|row| s.system[row * width + width - 1] >= 0.0));
     let released = s.active.len() < before;
@@ -306,17 +390,40 @@ fn change_active(scene: &Scene, s: &mut TouchScratch) -> bool {
 /// M n for the known spots from a number on: how the whole cell moves under a unit reaction of each, its volume
 /// constraint included.
 fn reach(scene: &Scene, target: f64, from: usize, s: &mut TouchScratch) {
-    let (kind, size) = (scene.kind, s.cell.x.len());
+    let size = s.cell.x.len();
     s.columns.resize(s.known.len() * size, 0.0);
-    let TouchScratch { spots, known, columns, pressures, cell: c, copies, .. } = s;
+    let TouchScratch { spots, known, columns, pressures, cell, copies, .. } = s;
     let (known, columns) = (&known[from..], &mut columns[from * size..]);
     for (number, column) in known.iter().zip(columns.chunks_exact_mut(size)) {
         column.fill(0.0);
         let spot = &spots[*number];
-        for (atom, share) in spot.parts() {
-            column[3 * atom..3 * atom + 3].copy_from_slice((share * spot.normal).as_slice());
-        }
+        spot.parts().for_each(|(atom, share)| press(column, atom, share * spot.normal));
     }
+    answer(scene, target, (cell, copies), columns, pressures);
+}
+
+/// M q for all that rolls.
+fn answer_rolling(scene: &Scene, target: f64, s: &mut TouchScratch) {
+    let size = s.cell.x.len();
+    s.roll_columns.resize(s.rolling.len() * size, 0.0);
+    s.roll_pressures.clear();
+    let TouchScratch { rolling, roll_columns, roll_pressures, cell, copies, .. } = s;
+    for (roll, column) in rolling.iter().zip(roll_columns.chunks_exact_mut(size)) {
+        column.fill(0.0);
+        roll.parts.iter().for_each(|(atom, vector)| press(column, *atom, *vector));
+    }
+    answer(scene, target, (cell, copies), roll_columns, roll_pressures);
+}
+
+/// Makes forces how the whole cell moves under them, its volume constraint included.
+fn answer(
+    scene: &Scene,
+    target: f64,
+    (c, copies): (&CellArrays, &mut Copies),
+    columns: &mut [f64],
+    pressures: &mut Vec<f64>,
+) {
+    let (kind, size) = (scene.kind, c.x.len());
     copies.solve(kind, &scene.system, &c.x, columns);
     for column in columns.chunks_exact_mut(size) {
         let mut held = 0.0;

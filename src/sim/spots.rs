@@ -100,3 +100,32 @@ fn deepest_of_edge(obstacle: &Obstacle, time: f64, at: impl Fn(usize) -> Vec3, e
     let is_deepest = gap < ends[0].gap && gap < ends[1].gap;
     is_deepest.then_some(Spot { obstacle: ends[0].obstacle, atoms, shares: [1.0 - share, share], gap, normal })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{self, Turned, icosphere};
+
+    #[test]
+    fn an_edge_over_a_ball_is_deepest_where_it_is_nearest_to_its_middle() {
+        let ball = Obstacle {
+            name: "ball".into(),
+            surface: geometry::Obstacle::Turned(Turned::ball(1.0, Vec3::zeros()).into()),
+            going: None,
+        };
+        let kind = Kind::new("a", icosphere(2.0, 2), Vec::new());
+        // The whole mesh beside the ball, so that some facets lie over it.
+        let at = |atom: usize| kind.rest.positions[atom] + Vec3::new(0.1, 0.2, -2.9);
+        let mut spots = Vec::new();
+        find_spots(&kind, &[ball], 0.0, at, &mut spots);
+        let edges: Vec<&Spot> = spots.iter().skip(kind.atoms()).collect();
+        assert!(edges.len() > 5, "{}", edges.len());
+        for spot in edges {
+            let [a, b] = spot.atoms.map(at);
+            let along = b - a;
+            let share = -a.dot(&along) / along.norm_squared();
+            assert!((spot.shares[1] - share).abs() < 1e-7, "{share} {spot:?}");
+            assert!((spot.gap - ((a + share * along).norm() - 1.0)).abs() < 1e-13, "{spot:?}");
+        }
+    }
+}

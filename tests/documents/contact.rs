@@ -77,7 +77,7 @@ fn the_table_gives_each_pair_its_strength_and_the_default_the_others() {
     let (default, pair) =
         (Strength { tensile: 10.0, shear: 4.0, energy: 0.0 }, Strength { tensile: 2.0, shear: 2.0, energy: 0.0 });
     assert_eq!(contact.between, [default, pair, pair, default]);
-    assert_eq!(contact.on_planes, [Strength { tensile: 50.0, shear: 5.0, energy: 0.0 }, Strength::default()]);
+    assert_eq!(contact.on_obstacles, [Strength { tensile: 50.0, shear: 5.0, energy: 0.0 }, Strength::default()]);
 }
 
 #[test]
@@ -87,10 +87,10 @@ fn surfaces_attract_each_other_by_default_as_far_as_the_energy_or_the_range_or_t
         let contact = compiled(&format!("[contact]{range}{table}")).model.contact.expect("contacts");
         let table = contact.law.cohesion().expect("the default").clone();
         let is_sheared_only = |strength: &Strength| (strength.tensile, strength.energy) == (0.0, 0.0);
-        assert!(contact.between.iter().chain(&contact.on_planes).all(is_sheared_only));
-        assert_eq!([contact.between[0].shear, contact.between[1].shear, contact.on_planes[0].shear], [4.0, 2.0, 5.0]);
-        assert_eq!(table.on_planes[1], Cohesive::default(), "nothing sticks to a plane that is not named");
-        [table.between[0], table.between[1], table.on_planes[0]].map(|pair| (pair.strength, pair.work))
+        assert!(contact.between.iter().chain(&contact.on_obstacles).all(is_sheared_only));
+        assert_eq!([contact.between[0].shear, contact.between[1].shear, contact.on_obstacles[0].shear], [4.0, 2.0, 5.0]);
+        assert_eq!(table.on_obstacles[1], Cohesive::default(), "nothing sticks to a plane that is not named");
+        [table.between[0], table.between[1], table.on_obstacles[0]].map(|pair| (pair.strength, pair.work))
     };
     assert_eq!(found("", ""), [(10.0, 7.5), (2.0, 1.5), (50.0, 37.5)]);
     assert_eq!(found("\nrange = \"2 um\"", ""), [(10.0, 10.0), (2.0, 2.0), (50.0, 50.0)]);
@@ -115,7 +115,7 @@ fn an_empty_table_turns_contacts_on_and_nothing_sticks() {
     assert!(compiled("").model.contact.is_none());
     let Compiled { model, .. } = compiled("[contact]\n");
     let contact = model.contact.expect("contacts");
-    assert!(contact.between.iter().chain(&contact.on_planes).all(|strength| *strength == Strength::default()));
+    assert!(contact.between.iter().chain(&contact.on_obstacles).all(|strength| *strength == Strength::default()));
     let smallest = model.kinds.iter().map(|kind| kind.edge).fold(f64::INFINITY, f64::min);
     assert_eq!(contact.reach.proximity, 0.1 * smallest);
 }

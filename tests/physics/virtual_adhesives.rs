@@ -53,8 +53,8 @@ fn model(mut kinds: Vec<Kind>, method: Method, dt: f64, until: f64, kappa: f64) 
     let integrator = Integrator { method, size: StepSize::Fixed(dt) };
     let mut contact = ContactModel::new(&kinds, &[], Reach { proximity: near, depth: near, margin: near });
     contact = contact.suited_to(integrator.size);
-    let (between, on_planes) = (vec![kappa; kinds.len() * kinds.len()], Vec::new());
-    contact.law = Law::VirtualAdhesives(AdhesiveTable { between, on_planes, zones: Zones::Merged });
+    let (between, on_obstacles) = (vec![kappa; kinds.len() * kinds.len()], Vec::new());
+    contact.law = Law::VirtualAdhesives(AdhesiveTable { between, on_obstacles, zones: Zones::Merged });
     Model { contact: Some(contact), ..Model::of(kinds, integrator, until) }
 }
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use pseudopod::geometry::icosphere;
 use pseudopod::output::{
-    Cell, CellRecord, CellType, FieldLayout, Frame, Header, Layout, Measure, Overwrite, ResultWriter, SystemLayout,
+    Cell, CellRecord, CellType, FieldLayout, Obstacle, Frame, Header, Layout, Measure, Overwrite, ResultWriter, SystemLayout,
     SystemScope,
 };
 

@@ -336,7 +336,7 @@ impl Scene {
         }
         for (one, row) in self.on_planes.iter().enumerate() {
             for (plane, &[tensile, shear]) in row.iter().enumerate() {
-                contact.stick_to_plane(one, plane, Strength { tensile, shear, energy: 0.0 });
+                contact.stick_to_obstacle(one, plane, Strength { tensile, shear, energy: 0.0 });
             }
         }
         let size = match (self.method, self.size) {
@@ -349,7 +349,7 @@ impl Scene {
         }
         let integrator = Integrator { method: self.method, size };
         let model =
-            Model { seed: self.seed, contact: Some(contact), planes, ..Model::of(kinds, integrator, self.until) };
+            Model { seed: self.seed, contact: Some(contact), obstacles: planes, ..Model::of(kinds, integrator, self.until) };
         let state = State::new(&model, &centres);
         (model, state)
     }

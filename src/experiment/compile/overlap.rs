@@ -2,11 +2,14 @@
 
 use super::super::Document;
 use crate::Vec3;
-use crate::contact::{Overlap, Scene, centre_is_inside};
+use crate::contact::{Overlap, Scene, centre_is_inside, winding_number};
 use crate::error::{Error, Fault, Result, short};
-use crate::geometry::bounding_box;
+use crate::geometry::{self, bounding_box};
 use crate::sim::contact::ContactScene;
 use crate::sim::{Model, State};
+
+/// An atom may begin so deep in a tool, over the mean edge: what placing a cell by hand to four digits leaves.
+const DEEP: f64 = 0.01;
 
 /// Overlaps that a message lists.
 const MOST: usize = 5;
@@ -95,6 +98,28 @@ pub fn behind_obstacles(model: &Model, state: &State, contact: &ContactScene, po
                 let into = if obstacle.surface.as_plane().is_some() { "behind the plane" } else { "into the tool" };
                 let words = format!("{name} reaches {depth} um {into} `{}`", obstacle.name);
                 found.push(Found { kind: number, words });
+            }
+        }
+    }
+    found
+}
+
+/// Cells that begin within tools, or have one within them.
+pub fn within_tools(model: &Model, state: &State) -> Vec<Found> {
+    let mut found = Vec::new();
+    let cells = (0..model.kinds.len()).flat_map(|number| (0..state.kinds[number].cells()).map(move |cell| (number, cell)));
+    for (body, (number, cell)) in cells.enumerate() {
+        let kind = &model.kinds[number];
+        let atoms = state.kinds[number].cell(kind, cell);
+        for tool in model.obstacles.iter().filter(|obstacle| !obstacle.is_flat()) {
+            let geometry::Obstacle::Turned(turned) = &tool.surface else { continue };
+            let name = name_of(model, state, body as u32);
+            let depth = -atoms.iter().map(|x| turned.beside(x).gap).fold(f64::INFINITY, f64::min);
+            if depth > DEEP * kind.edge {
+                let words = format!("{name} reaches {} um into the tool `{}`", short(depth), tool.name);
+                found.push(Found { kind: number, words });
+            } else if kind.closed && winding_number(turned.a_point(), &atoms, &kind.rest.facets) > 0.5 {
+                found.push(Found { kind: number, words: format!("the tool `{}` is within {name}", tool.name) });
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use super::super::Document;
 use super::Compiled;
-use super::overlap::{Found, behind_obstacles, refusal, told, too_deep};
+use super::overlap::{Found, behind_obstacles, refusal, told, too_deep, within_tools};
 use crate::Vec3;
 use crate::contact::{Overlap, Yielding, find_overlaps_told, push_apart};
 use crate::error::{Result, short};
@@ -73,6 +73,8 @@ pub fn settle_start_told(
     tell: &(dyn Fn(Settling) + Sync),
 ) -> Result<PushedApart> {
     let Compiled { model, state, .. } = compiled;
+    let within = within_tools(model, state);
+    refusal(document, model, "cells begin within tools, or tools within cells: ", &within, ", or move the tool")?;
     let Some(contact) = &model.contact.as_ref().map(|contact| contact.scene_of(&state.kinds)) else {
         return Ok(PushedApart::default());
     };

@@ -5,7 +5,7 @@ use super::points::points_of_facet;
 use super::*;
 use crate::contact::test_scenes::{Stage, packed_stage};
 use crate::contact::{Opening, Reach, Shape, Sides, opening_to_facet, opening_to_plane};
-use crate::geometry::{Surface, icosphere, sheet, volume};
+use crate::geometry::{Obstacle, Surface, icosphere, sheet, volume};
 
 const REACH: Reach = Reach { proximity: 0.1, depth: 0.1, margin: 0.1 };
 
@@ -60,7 +60,8 @@ fn areas_by_all(stage: &Stage, parts: u32) -> Vec<(u32, u32, f64)> {
                 }
             }
             for (number, obstacle) in (bodies..).zip(&scene.obstacles) {
-                let opening = opening_to_plane(n, (x - obstacle.point).dot(&obstacle.normal), obstacle.normal);
+                let beside = obstacle.beside(&x);
+                let opening = opening_to_plane(n, beside.gap, beside.normal);
                 if let Some((width, towards)) = opening
                     && width < best.0
                 {

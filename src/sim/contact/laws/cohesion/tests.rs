@@ -4,7 +4,7 @@ use super::patch::Partner;
 use super::*;
 use crate::contact::Sides;
 use crate::contact::{Reach, Shape};
-use crate::geometry::{Surface, facet_areas, icosphere, sheet};
+use crate::geometry::{Obstacle, Surface, facet_areas, icosphere, sheet};
 use crate::random::{Purpose, Stream};
 
 const REACH: Reach = Reach { proximity: 0.1, depth: 0.1, margin: 0.1 };
