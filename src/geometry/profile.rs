@@ -132,6 +132,11 @@ impl Arc {
         Self { centre, radius, begin, angle, halfway: [cos, sin], widest: (0.5 * angle).cos() }
     }
 
+    /// Radius of its circle, µm.
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
     fn direction(&self, share: f64) -> [f64; 2] {
         let (sin, cos) = (self.begin + self.angle * share).sin_cos();
         [cos, sin]

@@ -20,6 +20,9 @@ pub struct Turned {
     corners: Vec<([f64; 2], [f64; 2])>,
 }
 
+/// A tip is sharp whose normal beside the axis leans away from it by more than this sine.
+const SHARP: f64 = 0.05;
+
 /// Points nearer to a corner than this part of a micrometre have the normal of the corner.
 const ROUND_OFF: f64 = 1e-12;
 
@@ -90,6 +93,19 @@ impl Turned {
             }
         }
         best
+    }
+
+    /// How far from its axis its thinnest part is, µm: the radius of a ball, the corner that is nearest to the axis, nothing where a tip is sharp.
+    pub fn thinnest(&self) -> f64 {
+        if let [Piece::Arc(half)] = &self.pieces[..] {
+            return half.radius();
+        }
+        let is_sharp = |end: &[f64; 2], normal: [f64; 2]| end[0] == 0.0 && normal[0].abs() > SHARP;
+        let tips = self.pieces.iter().flat_map(|piece| [0, 1].map(|end| (piece.ends()[end], piece.normal_at_end(end))));
+        if tips.clone().any(|(end, normal)| is_sharp(&end, normal)) {
+            return 0.0;
+        }
+        tips.map(|(end, _)| end[0]).filter(|radius| *radius > 0.0).fold(f64::INFINITY, f64::min)
     }
 
     /// A point of its surface, µm.

@@ -85,14 +85,11 @@ impl std::fmt::Display for PopulationTrouble {
                     f,
                     "there is no space for all cells that come to type `{kind}`: {found} of {wanted} found a point "
                 )?;
-                write!(f, "where they touch no other cell and no obstacle; make their box larger, or them fewer")
+                write!(f, "where they touch no other cell and no plane; make their box larger, or them fewer")
             }
             Self::BehindObstacle { cell: (kind, id), obstacle, depth } => {
-                write!(
-                    f,
-                    "a cell to be added is behind an obstacle: cell {id} of type `{kind}` would be {depth:.1e} um "
-                )?;
-                write!(f, "behind the obstacle `{obstacle}`; place it before it")
+                write!(f, "a cell to be added is behind a plane: cell {id} of type `{kind}` would be {depth:.1e} um ")?;
+                write!(f, "behind the plane `{obstacle}`; place it before it")
             }
         }
     }

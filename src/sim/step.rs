@@ -20,6 +20,7 @@ use super::meet::note_meetings;
 use super::model::Model;
 use super::motility::advance_behaviours;
 use super::motion::move_freely;
+use super::obstacle::{check_pierced, travel_past};
 use super::plan::{Estimate, Flaw, Halt, Plan, StepReport};
 use super::protrude::{find_grips, push_pseudopods, release_rears};
 use super::refresh::fit_stiffness;
@@ -76,6 +77,7 @@ fn make_step(model: &Model, from: &State, to: &mut State, ws: &mut Workspace) ->
             break;
         }
     }
+    check_pierced(model, from.time + plan.dt, to)?;
     keep_contacts(model, from, to, ws);
     measure_velocities(model, plan.dt, from, to);
     keep_tractions(model, plan.dt, from, to, ws);
@@ -117,7 +119,9 @@ fn attempt(model: &Model, plan: &Plan, from: &State, to: &mut State, ws: &mut Wo
     check_finite(model, end, to)?;
     check_upright(model, end, to)?;
     let error = error.max(turn_over_bonds(model, dt, from, to, ws)).max(change_of_volumes(model, from, to));
-    Ok(Estimate { error, travel: travel(model, from, to, ws) })
+    let mut travel = travel(model, from, to, ws);
+    travel.share = travel.share.max(travel_past(model, from, to, end));
+    Ok(Estimate { error, travel })
 }
 
 /// Looks at where an attempt ends that its error allows.

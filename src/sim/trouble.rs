@@ -91,6 +91,15 @@ pub enum Trouble {
         /// How deep at least, µm.
         depth: f64,
     },
+    /// A tool has come through a facet of a cell, between its edges.
+    Pierced {
+        /// Name of the tool.
+        tool: String,
+        /// Type of the cell, and its number within it.
+        cell: (String, usize),
+        /// End of the step, s.
+        time: f64,
+    },
     /// An atom moved farther in a fixed step than contacts allow.
     TooFast {
         /// End of the step, s.
@@ -139,6 +148,10 @@ impl Trouble {
             Self::Contact { .. } | Self::Pressed { .. } => {
                 "contacts could not keep these cells apart: look at their last state; weaker loads, stiffer cells or \
                  shorter steps (run.integrator: a smaller step where you set one, else max_step or tolerance) may help"
+            }
+            Self::Pierced { .. } => {
+                "a cell lies on a tool by its atoms and edges: make its mesh finer than the tool is thin also where it is stretched, \
+                 or load it less"
             }
             Self::TooFast { .. } => "shorten run.integrator.step, or leave it out so that steps limit themselves",
             Self::StepTooSmall { .. } => {
@@ -193,11 +206,17 @@ impl std::fmt::Display for Trouble {
             }
             Self::Pressed { cells: [one, other], time, depth } if one == other => {
                 write!(f, "cell {} of type `{}` is at least {depth:.1e} um deep in itself ", one.1, one.0)?;
-                write!(f, "or behind an obstacle at t = {time:.6} s, more than contacts can mend")
+                write!(f, "or behind a plane at t = {time:.6} s, more than contacts can mend")
             }
             Self::Pressed { cells: [(kind, cell), other], time, depth } => {
                 write!(f, "cell {cell} of type `{kind}` and cell {} of type `{}` are ", other.1, other.0)?;
                 write!(f, "at least {depth:.1e} um deep in each other at t = {time:.6} s, more than contacts can mend")
+            }
+            Self::Pierced { tool, cell: (kind, cell), time } => {
+                write!(
+                    f,
+                    "the tool `{tool}` has come through a facet of cell {cell} of type `{kind}` at t = {time:.6} s"
+                )
             }
             Self::TooFast { time, share } => {
                 write!(f, "an atom moves {share:.2} times as far as contacts allow in the step to t = {time:.6} s")

@@ -88,7 +88,10 @@ fn surfaces_attract_each_other_by_default_as_far_as_the_energy_or_the_range_or_t
         let table = contact.law.cohesion().expect("the default").clone();
         let is_sheared_only = |strength: &Strength| (strength.tensile, strength.energy) == (0.0, 0.0);
         assert!(contact.between.iter().chain(&contact.on_obstacles).all(is_sheared_only));
-        assert_eq!([contact.between[0].shear, contact.between[1].shear, contact.on_obstacles[0].shear], [4.0, 2.0, 5.0]);
+        assert_eq!(
+            [contact.between[0].shear, contact.between[1].shear, contact.on_obstacles[0].shear],
+            [4.0, 2.0, 5.0]
+        );
         assert_eq!(table.on_obstacles[1], Cohesive::default(), "nothing sticks to a plane that is not named");
         [table.between[0], table.between[1], table.on_obstacles[0]].map(|pair| (pair.strength, pair.work))
     };

@@ -25,7 +25,8 @@ fn experiment_keeps_its_word(folder: &str, document: &str) {
 }
 
 /// Pictures that a README shows as what a command makes: the document, the file beside its result, the picture in docs/pictures.
-const SHOWN: [(&str, &str, &str); 14] = [
+const SHOWN: [(&str, &str, &str); 15] = [
+    ("aspiration/experiment.toml", "result.png", "aspiration.png"),
     ("bending_volume/linear.toml", "result.png", "bending_volume.png"),
     ("cantilever/experiment.toml", "result.deflection.png", "cantilever.png"),
     ("chemotaxis/experiment.toml", "result.png", "chemotaxis.png"),
@@ -66,6 +67,11 @@ fn a_red_cell_stretches_as_mills_measured() {
 fn red_cells_recover_in_the_times_that_hochmuth_measured() {
     experiment_keeps_its_word("red_cell_recovery", "experiment.toml");
     experiment_keeps_its_word("red_cell_recovery", "cell2.toml");
+}
+
+#[test]
+fn a_cell_is_drawn_into_a_pipette_as_its_tension_lets_it() {
+    experiment_keeps_its_word("aspiration", "experiment.toml");
 }
 
 #[test]

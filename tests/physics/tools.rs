@@ -27,16 +27,23 @@ fn force(state: &State) -> Vec3 {
     state.kinds.iter().flat_map(|kind| &kind.balance).map(|atom| Vec3::from(atom.traction)).sum()
 }
 
-/// A shell of 162 atoms, 2 um wide, that a ball of 0.5 um is pushed into from below; further keys, and how the ball goes.
-fn on_ball(cell: &str, ball: &str, until: &str) -> String {
+/// A shell of 642 atoms, 2 um wide, that lies on a tool; further keys of the cell, and how the tool goes.
+fn on_tool(height: &str, surface: &str, cell: &str, goes: &str, until: &str) -> String {
     format!(
         "title = \"t\"\nrun = {{ until = \"{until}\", integrator = {{ tolerance = 1e-3 }} }}\n\
-         [cells.shell]\nmesh = {{ shape = \"icosphere\", radius = \"2 um\", level = 2 }}\n\
-         placement = {{ at = [[\"0 um\", \"0 um\", \"2.5 um\"]] }}\n\
+         [cells.shell]\nmesh = {{ shape = \"icosphere\", radius = \"2 um\", level = 3 }}\n\
+         placement = {{ at = [[\"0 um\", \"0 um\", \"{height}\"]] }}\n\
          [cells.shell.mechanics]\ndrag = \"1 pN s/um\"\n\
          membrane = {{ law = \"neo_hookean\", shear = \"20 uN/m\", area = \"60 uN/m\", bending = \"5 pN um\" }}\n{cell}\n\
-         [[tools]]\nname = \"ball\"\nsurface = {{ shape = \"ball\", radius = \"0.5 um\" }}\n{ball}\n"
+         [[tools]]\nname = \"tool\"\nsurface = {surface}\n{goes}\n"
     )
+}
+
+/// That on a ring in which it cannot slip aside.
+fn on_ring(cell: &str, goes: &str, until: &str) -> String {
+    let profile = "[[\"1 um\", 0], [\"1.6 um\", 0], [\"1.6 um\", \"0.6 um\"], [\"1 um\", \"0.6 um\"]]";
+    let surface = format!("{{ shape = \"lathe\", profile = {profile}, rounding = \"0.2 um\" }}");
+    on_tool("2.244 um", &surface, cell, goes, until)
 }
 
 /// The depth of the deepest of 20 points of each edge of all cells, µm.
@@ -57,23 +64,40 @@ fn deepest(model: &Model, state: &State) -> f64 {
 }
 
 #[test]
-fn a_load_is_borne_by_the_ball_that_the_cell_is_pressed_on() {
+fn a_load_is_borne_by_the_ring_that_the_cell_is_pressed_on() {
     let load = "[[cells.shell.loads]]\nname = \"press\"\nall = true\ndirection = [0, 0, -1]\n\
                 force = [[\"0 s\", \"0 pN\"], [\"1 s\", \"40 pN\"]]";
     let mut deep: f64 = 0.0;
-    let (_, state) = run(&on_ball(load, "", "10 s"), |model, state| deep = deep.max(deepest(model, state)));
+    let (_, state) = run(&on_ring(load, "", "5 s"), |model, state| deep = deep.max(deepest(model, state)));
     // At rest: what bears the load has come to it within the tolerance.
     assert!((force(&state) - Vec3::new(0.0, 0.0, -40.0)).norm() < 0.04, "{}", force(&state));
-    // Between the atoms, too: an edge of 0.6 µm over the ball would be 0.09 µm deep if only atoms were held.
+    // Between the atoms, too: an edge of 0.3 µm over the rim would be 0.05 µm deep if only atoms were held.
     assert!(deep < 1e-6, "{deep}");
 }
 
 #[test]
-fn a_ball_that_pushes_a_cell_bears_the_drag_of_its_atoms() {
-    let ball = "displacement = [[\"0 s\", \"0 um\"], [\"20 s\", \"20 um\"]]";
-    let (model, state) = run(&on_ball("", ball, "20 s"), |_, _| {});
-    let drag = model.kinds[0].drag * 162.0 * 1.0;
+fn a_ring_that_pushes_a_cell_bears_the_drag_of_its_atoms() {
+    let goes = "displacement = [[\"0 s\", \"0 um\"], [\"2 s\", \"2 um\"]]";
+    let (model, state) = run(&on_ring("", goes, "2 s"), |_, _| {});
+    let drag = model.kinds[0].drag * 642.0 * 1.0;
     assert!((force(&state).z + drag).abs() < 1e-3 * drag, "{} {drag}", force(&state));
     assert!(force(&state).xy().norm() < 1e-3 * drag, "{}", force(&state));
     assert!(deepest(&model, &state) < 1e-6, "{}", deepest(&model, &state));
+}
+
+#[test]
+fn a_ball_that_comes_through_a_facet_ends_the_run() {
+    let load = "[[cells.shell.loads]]\nname = \"press\"\nall = true\ndirection = [0, 0, -1]\n\
+                force = [[\"0 s\", \"0 pN\"], [\"1 s\", \"400 pN\"]]";
+    let ball = on_tool("2.5 um", "{ shape = \"ball\", radius = \"0.5 um\" }", load, "", "40 s");
+    let Compiled { model, mut state, .. } = compile(&document(&ball)).expect("good");
+    let mut ws = Workspace::new(&model);
+    let trouble = loop {
+        if let Err(trouble) = step(&model, &mut state, &mut ws) {
+            break trouble.to_string();
+        }
+        assert!(state.time < model.until, "it bears everything");
+    };
+    let expected = "the tool `tool` has come through a facet of cell 0 of type `shell` at t = ";
+    assert!(trouble.starts_with(expected), "{trouble}");
 }

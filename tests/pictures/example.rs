@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use pseudopod::geometry::icosphere;
 use pseudopod::output::{
-    Cell, CellRecord, CellType, FieldLayout, Obstacle, Frame, Header, Layout, Measure, Overwrite, ResultWriter, SystemLayout,
-    SystemScope,
+    Cell, CellRecord, CellType, FieldLayout, Frame, Header, Layout, Measure, Obstacle, Overwrite, ResultWriter,
+    SystemLayout, SystemScope,
 };
 
 pub const TEXT: &str = r#"

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use pseudopod::output::{
-    Cell, CellRecord, CellType, FieldLayout, Obstacle, Frame, Header, Layout, MembraneLayout, Overwrite, ResultWriter,
+    Cell, CellRecord, CellType, FieldLayout, Frame, Header, Layout, MembraneLayout, Obstacle, Overwrite, ResultWriter,
     SystemLayout, SystemScope, Touching, Tractions,
 };
 use pseudopod::recorded::TractionRecord;

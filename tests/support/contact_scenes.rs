@@ -348,8 +348,12 @@ impl Scene {
             contact = contact.suited_to(size);
         }
         let integrator = Integrator { method: self.method, size };
-        let model =
-            Model { seed: self.seed, contact: Some(contact), obstacles: planes, ..Model::of(kinds, integrator, self.until) };
+        let model = Model {
+            seed: self.seed,
+            contact: Some(contact),
+            obstacles: planes,
+            ..Model::of(kinds, integrator, self.until)
+        };
         let state = State::new(&model, &centres);
         (model, state)
     }

@@ -126,6 +126,7 @@ pub fn prepare(document: &Document) -> Result<Prepared> {
         return Err(Error::Input(faults));
     }
     let (reach, obstacles) = (contact::reach(document, &kinds)?, obstacles::obstacles(document)?);
+    obstacles::check_thickness(document, &kinds, &obstacles)?;
     contact::check_ranges(document, &kinds)?;
     contact::check_area_within(document, &kinds)?;
     let centres = match reach {

@@ -107,7 +107,8 @@ pub fn behind_obstacles(model: &Model, state: &State, contact: &ContactScene, po
 /// Cells that begin within tools, or have one within them.
 pub fn within_tools(model: &Model, state: &State) -> Vec<Found> {
     let mut found = Vec::new();
-    let cells = (0..model.kinds.len()).flat_map(|number| (0..state.kinds[number].cells()).map(move |cell| (number, cell)));
+    let cells =
+        (0..model.kinds.len()).flat_map(|number| (0..state.kinds[number].cells()).map(move |cell| (number, cell)));
     for (body, (number, cell)) in cells.enumerate() {
         let kind = &model.kinds[number];
         let atoms = state.kinds[number].cell(kind, cell);
