@@ -31,7 +31,7 @@ pub use measure::{
     area, area_vectors, atom_areas, atom_normals, bounding_box, centre_of_volume, facet_areas, facet_qualities,
     mean_edge_length, smallest_angle, volume, volume_gradient,
 };
-pub use obstacle::{Beside, Obstacle};
+pub use obstacle::Obstacle;
 pub use occupied::{Occupied, point_in_box};
 pub use orient::orient_outwards;
 pub use principal::{PrincipalAxes, principal_axes, principal_extents};
@@ -42,7 +42,7 @@ pub use solid::{Solid, SolidCell, SolidFault};
 pub use spheres::{MAX_ICOSPHERE_LEVEL, icosphere, octasphere};
 pub use topology::{Flap, Ring, Topology};
 pub use transform::{rotate, scale, translate};
-pub use turned::Turned;
+pub use turned::{Beside, Turned};
 
 use crate::Vec3;
 

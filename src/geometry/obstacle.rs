@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::Turned;
+use super::turned::{Beside, Turned};
 use crate::Vec3;
 
 /// A rigid surface that no atom passes.
@@ -17,15 +17,6 @@ pub enum Obstacle {
     },
     /// All that is outside of a body of revolution is free.
     Turned(Arc<Turned>),
-}
-
-/// Where a point is beside an obstacle.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Beside {
-    /// Distance from its surface, µm; negative within.
-    pub gap: f64,
-    /// Unit normal of the surface at the point of it that is nearest, towards the free side: the gradient of the gap.
-    pub normal: Vec3,
 }
 
 impl Obstacle {

@@ -4,6 +4,15 @@ use super::profile::{Arc, Piece, Profile, ProfileFault, outline};
 use crate::Vec3;
 use std::f64::consts::PI;
 
+/// Where a point is beside an obstacle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Beside {
+    /// Distance from its surface, µm; negative within.
+    pub gap: f64,
+    /// Unit normal of the surface at the point of it that is nearest, towards the free side: the gradient of the gap.
+    pub normal: Vec3,
+}
+
 /// A body that a profile makes when it is turned about an axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Turned {
@@ -62,14 +71,14 @@ impl Turned {
     }
 
     /// How far a point (µm) is from the surface, and the normal there.
-    pub fn beside(&self, x: &Vec3) -> super::Beside {
+    pub fn beside(&self, x: &Vec3) -> Beside {
         let from = x - self.point;
         let height = from.dot(&self.axis);
         let across = from - height * self.axis;
         let radius = across.norm();
         let (gap, [outwards, along]) = self.in_half_plane([radius, height]);
         let out = if radius > 0.0 { across / radius } else { any_across(&self.axis) };
-        super::Beside { gap, normal: outwards * out + along * self.axis }
+        Beside { gap, normal: outwards * out + along * self.axis }
     }
 
     /// The same in the half plane of the profile.

@@ -30,6 +30,7 @@ mod moved;
 pub mod observe;
 pub mod obstacle;
 pub mod obstacles;
+mod pierced;
 mod plan;
 pub mod population;
 pub mod population_trouble;

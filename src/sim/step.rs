@@ -20,7 +20,7 @@ use super::meet::note_meetings;
 use super::model::Model;
 use super::motility::advance_behaviours;
 use super::motion::move_freely;
-use super::obstacle::{check_pierced, travel_past};
+use super::pierced::{check_pierced, travel_past};
 use super::plan::{Estimate, Flaw, Halt, Plan, StepReport};
 use super::protrude::{find_grips, push_pseudopods, release_rears};
 use super::refresh::fit_stiffness;
