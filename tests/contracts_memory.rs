@@ -88,7 +88,7 @@ fn scene(method: Method, acting: Acting, cells: usize) -> Model {
         }
     }
     let integrator = Integrator { method, size: StepSize::Fixed(0.01) };
-    Model { planes, ..Model::of(vec![kind.for_cells(cells)], integrator, 1e9) }
+    Model { obstacles: planes, ..Model::of(vec![kind.for_cells(cells)], integrator, 1e9) }
 }
 
 fn pull(direction: Vec3, atom: u32) -> Force {

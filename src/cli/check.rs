@@ -94,9 +94,9 @@ fn tell_of_fine_meshes(path: &Path, document: &Document) {
     }
 }
 
-/// Looks whether cells overlap at the start, where they touch: only then they have to be built.
+/// Looks whether cells overlap at the start, where they touch, or tools: only then they have to be built.
 fn settled(document: &Document, prepared: Prepared) -> Result<PushedApart> {
-    if prepared.model.contact.is_none() {
+    if prepared.model.contact.is_none() && prepared.model.obstacles.iter().all(|obstacle| obstacle.is_flat()) {
         return Ok(PushedApart::default());
     }
     let progress = Mutex::new(Progress::default());
