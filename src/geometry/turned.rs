@@ -94,7 +94,7 @@ impl Turned {
         for (at, normals) in &self.corners {
             let [r, z] = [p[0] - at[0], p[1] - at[1]];
             let distance = r.hypot(z);
-            if distance < best.0.abs() {
+            if distance <= best.0.abs() {
                 let sign = (r * normals[0] + z * normals[1]).signum();
                 let [r, z] = if distance > ROUND_OFF { [sign * r, sign * z] } else { *normals };
                 let length = r.hypot(z);
