@@ -253,7 +253,7 @@ impl Piece {
                 let (distance, sign) = (from[0].hypot(from[1]), arc.angle.signum());
                 let along = from[0] * arc.halfway[0] + from[1] * arc.halfway[1];
                 let normal = if distance > 0.0 { from.map(|part| sign * part / distance) } else { arc.halfway };
-                (along >= arc.widest * distance).then(|| (sign * (distance - arc.radius), normal))
+                (along >= arc.widest * distance).then_some((sign * (distance - arc.radius), normal))
             }
         }
     }

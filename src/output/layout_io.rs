@@ -120,13 +120,18 @@ fn read_obstacles(file: &File) -> hdf5::Result<Vec<Obstacle>> {
     // Files of earlier versions have none.
     let later = |path: &str| if file.link_exists(path) { vectors(file, path) } else { Ok(Vec::new()) };
     let (profiles, directions) = (later("/planes/profile")?, later("/planes/direction")?);
-    let each = names.into_iter().zip(points.into_iter().zip(normals)).enumerate();
-    let obstacle = |(number, (name, (point, normal))): (usize, (String, ([f64; 3], [f64; 3])))| {
+    let count = points.len().min(normals.len());
+    let obstacle = |(number, name): (usize, String)| {
         let own = profiles.iter().filter(|row| row[2] == number as f64);
-        let direction = directions.get(number).copied().unwrap_or_default();
-        Obstacle { name, point, normal, direction, profile: own.map(|row| [row[0], row[1]]).collect() }
+        Obstacle {
+            name,
+            point: points[number],
+            normal: normals[number],
+            direction: directions.get(number).copied().unwrap_or_default(),
+            profile: own.map(|row| [row[0], row[1]]).collect(),
+        }
     };
-    Ok(each.map(obstacle).collect())
+    Ok(names.into_iter().take(count).enumerate().map(obstacle).collect())
 }
 
 /// The numbers of a dataset of the types of cells; none for what VTK wants and nobody fills.

@@ -1,7 +1,7 @@
 //! How forces of the cohesive law change as cells move, against differences of these forces.
 
 use super::patch::{Partner, Patch};
-use super::tests::{GLUE, floor, found, moved, scene};
+use super::tests::{GLUE, found, moved, scene};
 use super::*;
 use crate::contact::{Feature, Sides};
 use crate::geometry::{icosphere, sheet};
