@@ -121,15 +121,17 @@ fn read_obstacles(file: &File) -> hdf5::Result<Vec<Obstacle>> {
     let later = |path: &str| if file.link_exists(path) { vectors(file, path) } else { Ok(Vec::new()) };
     let (profiles, directions) = (later("/planes/profile")?, later("/planes/direction")?);
     let count = points.len().min(normals.len());
-    let obstacle = |(number, name): (usize, String)| {
-        let own = profiles.iter().filter(|row| row[2] == number as f64);
-        Obstacle {
-            name,
-            point: points[number],
-            normal: normals[number],
-            direction: directions.get(number).copied().unwrap_or_default(),
-            profile: own.map(|row| [row[0], row[1]]).collect(),
-        }
+    let mut own: Vec<Vec<[f64; 2]>> = vec![Vec::new(); count];
+    for [radius, height, number] in profiles {
+        // What names no tool is of none.
+        own.get_mut(number as usize).into_iter().for_each(|own| own.push([radius, height]));
+    }
+    let obstacle = |(number, name): (usize, String)| Obstacle {
+        name,
+        point: points[number],
+        normal: normals[number],
+        direction: directions.get(number).copied().unwrap_or_default(),
+        profile: std::mem::take(&mut own[number]),
     };
     Ok(names.into_iter().take(count).enumerate().map(obstacle).collect())
 }
