@@ -35,6 +35,13 @@ pub struct Travel {
     pub farthest: f64,
 }
 
+impl Travel {
+    /// The same, where something else says of its share, too.
+    pub fn or_farther(self, share: f64) -> Self {
+        Self { share: self.share.max(share), ..self }
+    }
+}
+
 /// Whether a body may touch itself.
 #[derive(Debug, Clone, Copy)]
 pub enum Itself<'a> {

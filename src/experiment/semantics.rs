@@ -237,7 +237,7 @@ impl Check<'_> {
         let (message, label) = match names.iter().find(|name| !surfaces().any(|known| known == **name)) {
             _ if alike.contains(&turned.as_str()) => (message, format!("did you mean \"{turned}\"?")),
             Some(name) => {
-                let message = format!("`{path}`: there is no type of cells or plane \"{name}\"");
+                let message = format!("`{path}`: there is no type of cells, plane or tool \"{name}\"");
                 let meant = words::meant(name, surfaces());
                 (message, meant.map_or("unknown name".to_owned(), |meant| format!("did you mean \"{meant}\"?")))
             }

@@ -88,8 +88,8 @@ impl std::fmt::Display for PopulationTrouble {
                 write!(f, "where they touch no other cell and no plane; make their box larger, or them fewer")
             }
             Self::BehindObstacle { cell: (kind, id), obstacle, depth } => {
-                write!(f, "a cell to be added is behind a plane: cell {id} of type `{kind}` would be {depth:.1e} um ")?;
-                write!(f, "behind the plane `{obstacle}`; place it before it")
+                write!(f, "a cell to be added is behind a plane or in a tool: cell {id} of type `{kind}` would be ")?;
+                write!(f, "{depth:.1e} um deep in `{obstacle}`; place it clear of that")
             }
         }
     }

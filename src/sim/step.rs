@@ -119,9 +119,7 @@ fn attempt(model: &Model, plan: &Plan, from: &State, to: &mut State, ws: &mut Wo
     check_finite(model, end, to)?;
     check_upright(model, end, to)?;
     let error = error.max(turn_over_bonds(model, dt, from, to, ws)).max(change_of_volumes(model, from, to));
-    let mut travel = travel(model, from, to, ws);
-    travel.share = travel.share.max(travel_past(model, from, to, end));
-    Ok(Estimate { error, travel })
+    Ok(Estimate { error, travel: travel(model, from, to, ws).or_farther(travel_past(model, from, to, end)) })
 }
 
 /// Looks at where an attempt ends that its error allows.

@@ -219,7 +219,10 @@ impl std::fmt::Display for Trouble {
                 )
             }
             Self::TooFast { time, share } => {
-                write!(f, "an atom moves {share:.2} times as far as contacts allow in the step to t = {time:.6} s")
+                write!(
+                    f,
+                    "an atom moves {share:.2} times as far as contacts or tools allow in the step to t = {time:.6} s"
+                )
             }
             Self::StepTooSmall { time, dt } => {
                 write!(f, "at t = {time:.6} s no step was small enough: {dt:.1e} s still misses the tolerance")

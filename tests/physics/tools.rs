@@ -5,6 +5,7 @@ use std::path::Path;
 use pseudopod::Vec3;
 use pseudopod::experiment::{Compiled, Document, compile};
 use pseudopod::geometry::Topology;
+use pseudopod::sim::contact::Law;
 use pseudopod::sim::{Model, State, Workspace, step};
 
 fn document(text: &str) -> Document {
@@ -93,4 +94,25 @@ fn a_ball_that_has_come_into_a_cell_ends_the_run() {
     let trouble = step(&model, &mut state, &mut Workspace::new(&model)).expect_err("it is within").to_string();
     let expected = "the tool `tool` has come through a facet of cell 0 of type `shell` at t = ";
     assert!(trouble.starts_with(expected), "{trouble}");
+}
+
+#[test]
+fn a_step_may_lead_no_atom_past_a_tool() {
+    let load = "[[cells.shell.loads]]\nname = \"press\"\nall = true\ndirection = [0, 0, 1]\nforce = \"10 pN\"";
+    // Upwards, off the ring: in 0.1 s the cell goes 1 um, and a quarter of its radius of 1 um is safe there.
+    let text = on_ring(load, "", "1 s").replace("tolerance = 1e-3", "step = \"0.1 s\"");
+    let Compiled { model, mut state, .. } = compile(&document(&text)).expect("good");
+    let trouble = step(&model, &mut state, &mut Workspace::new(&model)).expect_err("too far").to_string();
+    assert!(trouble.contains("times as far as contacts or tools allow"), "{trouble}");
+}
+
+#[test]
+fn a_type_sticks_to_a_tool_by_its_name() {
+    let text = on_ring("", "", "1 s")
+        + "[contact]\n[[contact.between]]\ntypes = [\"shell\", \"tool\"]\nstrength = \"2 pN/um^2\"\nenergy = \"1 pN/um\"\n";
+    let Compiled { model, .. } = compile(&document(&text)).expect("good");
+    let contact = model.contact.expect("contacts");
+    assert_eq!(contact.obstacles.len(), 1);
+    let Law::Cohesion(table) = &contact.law else { panic!("{:?}", contact.law) };
+    assert_eq!((table.on_obstacles[0].strength, table.on_obstacles[0].work), (2.0, 1.0));
 }

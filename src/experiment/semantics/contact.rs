@@ -49,8 +49,9 @@ impl Check<'_> {
             let known = (0..2).filter(|side| self.surface(&format!("{path}[{side}]"), &between.types[*side])).count();
             let Some(pair) = between.pair(experiment) else {
                 if known == 2 {
-                    let message = format!("`{path}` names two planes, which never touch");
-                    self.fault(&path, "two planes", message, "name a type of cells and a plane, or two types");
+                    let message =
+                        format!("`{path}` names no type of cells, and planes and tools never touch each other");
+                    self.fault(&path, "no cells", message, "name a type of cells and a plane or tool, or two types");
                 }
                 continue;
             };
@@ -166,9 +167,9 @@ impl Check<'_> {
             let path = format!("contact.between[{index}]");
             let on_plane = matches!(between.pair(&self.document.experiment), Some(Pair::OnObstacle(..)));
             if contact.model == ContactModel::Links && on_plane {
-                let message = format!("`{path}` names a plane, and links join facets of cells");
-                let help = "leave the pair out: cells rest on planes and slide there";
-                self.fault(&format!("{path}.types"), "a plane has no facets", message, help);
+                let message = format!("`{path}` names a plane or tool, and links join facets of cells");
+                let help = "leave the pair out: cells rest on planes and tools and slide there";
+                self.fault(&format!("{path}.types"), "has no facets", message, help);
             } else if contact.model == ContactModel::Links && between.link.is_none() {
                 let message = format!("`{path}` does not say how stiff its links are");
                 self.fault(&path, "`link` is missing", message, "add `link`; \"0 pN/um\" does not bind");
@@ -194,24 +195,30 @@ impl Check<'_> {
         }
     }
 
-    /// Whether a name is that of one type or plane; a fault if not.
+    /// Whether a name is that of one type, plane or tool; a fault if not.
     fn surface(&mut self, path: &str, name: &str) -> bool {
         let experiment = &self.document.experiment;
         let types = || experiment.cells.keys().map(String::as_str);
         let planes = || experiment.planes.iter().map(|plane| plane.name.as_str());
-        match (types().any(|known| known == name), planes().any(|known| known == name)) {
+        let tools = || experiment.tools.iter().map(|tool| tool.name.as_str());
+        match (types().any(|known| known == name), experiment.obstacles().any(|known| known == name)) {
+            // A tool with the name of a type is told where it stands.
+            (true, true) if planes().all(|known| known != name) => {}
             (true, true) => {
                 let message = format!("`{path}`: \"{name}\" is a type of cells and a plane");
                 self.fault(path, "which of the two?", message, "give the plane another name");
             }
             (false, false) => {
-                let meant = words::meant(name, types().chain(planes()));
+                let meant = words::meant(name, types().chain(experiment.obstacles()));
                 let label = meant.map_or("unknown".to_owned(), |meant| format!("did you mean \"{meant}\"?"));
                 let mut help = format!("types of cells here are {}", words::all_of(types()));
                 if planes().next().is_some() {
                     help += &format!("; planes are {}", words::all_of(planes()));
                 }
-                let message = format!("`{path}`: there is no type of cells and no plane \"{name}\"");
+                if tools().next().is_some() {
+                    help += &format!("; tools are {}", words::all_of(tools()));
+                }
+                let message = format!("`{path}`: there is no type of cells, plane or tool \"{name}\"");
                 self.fault(path, &label, message, help);
                 return false;
             }

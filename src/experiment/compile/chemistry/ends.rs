@@ -372,21 +372,21 @@ impl Ends<'_, '_> {
         })
     }
 
-    /// The number of the plane with a name.
+    /// The number of the plane or tool with a name.
     fn numbered_plane(&self, end: &Endpoint, index: &Index) -> Result<usize, Fault> {
         let Index::Name(name) = index else {
-            let message = "planes have names, not numbers".to_owned();
+            let message = "planes and tools have names, not numbers".to_owned();
             return Err(within(&end.location, "not a name", message, "write on_plane[NAME]"));
         };
         let known = || self.planes.iter().copied();
         known().position(|plane| plane == name).ok_or_else(|| {
             let label = words::meant(name, known()).map(|near| format!("did you mean `{near}`?"));
             let help = match self.planes.is_empty() {
-                true => "the experiment has no [[planes]]".to_owned(),
-                false => format!("planes here are {}", words::all_of(known())),
+                true => "the experiment has no [[planes]] and no [[tools]]".to_owned(),
+                false => format!("planes and tools here are {}", words::all_of(known())),
             };
-            let message = format!("there is no plane `{name}`");
-            within(&end.location, label.as_deref().unwrap_or("unknown plane"), message, help)
+            let message = format!("there is no plane or tool `{name}`");
+            within(&end.location, label.as_deref().unwrap_or("unknown name"), message, help)
         })
     }
 
