@@ -8,11 +8,11 @@ use super::colour::Colour;
 use super::field_view::FieldView;
 use super::from_result::{Framing, Look, Snapshot, Values, picture_of};
 use super::instant::frame_at;
-use super::quantities::AtomQuantity;
 use super::render::Sheet;
+use super::shown::{Of, Shown};
 use super::{Image, plots};
 use crate::Vec3;
-use crate::error::{Error, Fault, Result};
+use crate::error::Result;
 use crate::experiment::{Document, Picture};
 use crate::output::{Cell, FibreRow, Obstacle, ResultFile};
 
@@ -30,15 +30,6 @@ struct Shot {
     gone: Vec<Vec3>,
 }
 
-/// What colours show.
-#[derive(Debug, Clone, PartialEq)]
-enum Shown {
-    Type,
-    Atoms(AtomQuantity),
-    Membrane(String),
-    Cells(String),
-}
-
 /// A result and all that its pictures share.
 struct Stage<'a> {
     result: &'a ResultFile,
@@ -53,47 +44,12 @@ struct Stage<'a> {
     until: f64,
 }
 
-/// Finds what `name` means for this result: the type, a quantity of atoms or a series of cells.
-fn shown_of(result: &ResultFile, name: &str) -> Result<Shown> {
-    if name == "type" {
-        return Ok(Shown::Type);
-    }
-    if result.series_names().iter().any(|known| known == name) {
-        return Ok(Shown::Cells(name.to_owned()));
-    }
-    let membranes = &result.layout().membranes;
-    if membranes.iter().any(|membrane| membrane.name == name) {
-        return Ok(Shown::Membrane(name.to_owned()));
-    }
-    match AtomQuantity::named(name) {
-        Some(quantity) if quantity.is_in(result)? => Ok(Shown::Atoms(quantity)),
-        Some(_) => {
-            let fault = Fault::new(format!("{} holds no forces on atoms", result.path().display()));
-            Err(Error::input(fault.help("run the experiment with output.forces = true, or colour by something else")))
-        }
-        None => {
-            let mut names: Vec<String> = ["type".to_owned()].into();
-            for quantity in AtomQuantity::names() {
-                if AtomQuantity::named(quantity).is_some_and(|known| known.is_in(result).unwrap_or(false)) {
-                    names.push(quantity.to_owned());
-                }
-            }
-            names.extend(membranes.iter().map(|membrane| membrane.name.clone()));
-            names.extend(result.series_names());
-            let fault = Fault::new(format!("nothing in {} is called `{name}`", result.path().display()));
-            let near = names.iter().map(|other| (strsim::damerau_levenshtein(name, other), other)).min();
-            let meant = near.filter(|(apart, _)| *apart <= 2).map(|(_, other)| format!("did you mean `{other}`? "));
-            Err(Error::input(fault.help(format!("{}there are: {}", meant.unwrap_or_default(), names.join(", ")))))
-        }
-    }
-}
-
 /// Makes sure that a result has what its pictures are to be coloured by.
 ///
 /// # Errors
 /// [`Error::Input`] that lists what there is.
 pub fn check_colour(result: &ResultFile, name: &str) -> Result<()> {
-    shown_of(result, name).map(drop)
+    Shown::named(result, name).map(drop)
 }
 
 /// Makes sure that a result has the field that its pictures are to show.
@@ -106,7 +62,7 @@ pub fn check_field(result: &ResultFile, picture: &Picture) -> Result<()> {
 
 impl<'a> Stage<'a> {
     fn new(result: &'a ResultFile, document: &Document, picture: &Picture) -> Result<Self> {
-        let shown = shown_of(result, &picture.colour_by)?;
+        let shown = Shown::named(result, &picture.colour_by)?;
         let mut look = look_of(result, document, picture, &shown);
         let field = FieldView::of(result, picture)?;
         look.field_range = picture.field_range;
@@ -124,14 +80,7 @@ impl<'a> Stage<'a> {
 
     fn shot(&self, frame: usize) -> Result<Shot> {
         let (cells, positions) = (self.result.cells(frame), self.result.positions(frame)?);
-        let values = match &self.shown {
-            Shown::Type => Vec::new(),
-            Shown::Atoms(quantity) => quantity.of_frame(self.result, frame, &positions)?,
-            Shown::Membrane(name) => {
-                self.result.membrane(name, frame)?.unwrap_or_else(|| vec![f64::NAN; positions.len()])
-            }
-            Shown::Cells(name) => self.result.cell_values(name, frame)?,
-        };
+        let values = self.shown.values(self.result, frame, &positions)?;
         let time = self.times[frame];
         let field = self.field.as_ref().map(|field| field.sheet(self.result, frame, &positions)).transpose()?;
         let arrows = self.arrows.at(time, self.result.layout(), &cells, &positions);
@@ -163,10 +112,10 @@ impl<'a> Stage<'a> {
     }
 
     fn snapshot<'b>(&'b self, shot: &'b Shot) -> Snapshot<'b> {
-        let values = match self.shown {
-            Shown::Type => Values::Type,
-            Shown::Atoms(_) | Shown::Membrane(_) => Values::Atoms(&shot.values),
-            Shown::Cells(_) => Values::Cells(&shot.values),
+        let values = match self.shown.of() {
+            Of::Types => Values::Type,
+            Of::Atoms => Values::Atoms(&shot.values),
+            Of::Cells => Values::Cells(&shot.values),
         };
         let layout = self.result.layout();
         let (cells, positions, arrows, field) = (&shot.cells, &shot.positions, &shot.arrows, shot.field.as_ref());
@@ -180,32 +129,24 @@ impl<'a> Stage<'a> {
 }
 
 fn look_of(result: &ResultFile, document: &Document, picture: &Picture, shown: &Shown) -> Look {
-    let types = result.layout().type_names();
-    let palette = |i: usize| super::colour::PALETTE[i % super::colour::PALETTE.len()];
-    let colour = |(i, name): (usize, &String)| {
-        let given = document.experiment.cells.get(name).and_then(|cell| cell.colour);
-        given.map_or_else(|| palette(i), |colour| Colour(colour.0))
-    };
-    let label = match shown {
-        Shown::Type => String::new(),
-        Shown::Atoms(quantity) => quantity.label().to_owned(),
-        Shown::Membrane(name) => {
-            let unit =
-                result.layout().membranes.iter().find(|membrane| membrane.name == *name).map(|m| m.unit.as_str());
-            unit.filter(|unit| !unit.is_empty()).map_or(name.clone(), |unit| format!("{name} ({unit})"))
-        }
-        Shown::Cells(name) => plots::label_of(result, name),
-    };
     Look {
         title: document.experiment.title.clone(),
-        type_colours: types.iter().enumerate().map(colour).collect(),
+        type_colours: type_colours(result, document),
         range: picture.colour_range,
-        label,
+        label: shown.label(result),
         direction: picture.view.from,
         up: picture.view.up,
         cut: picture.cut.map(|cut| cut.value()),
         ..Look::default()
     }
+}
+
+/// The colours of the types of cells of a result: those of its document, else of the palette.
+pub fn type_colours(result: &ResultFile, document: &Document) -> Vec<Colour> {
+    let given = |name: &String| document.experiment.cells.get(name).and_then(|cell| cell.colour);
+    let types = result.layout().type_names();
+    let colour = |(i, name)| given(name).map_or_else(|| Colour::of_palette(i), |colour| Colour(colour.0));
+    types.iter().enumerate().map(colour).collect()
 }
 
 /// The picture of one instant.

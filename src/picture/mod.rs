@@ -17,6 +17,7 @@ pub mod movie;
 pub mod plots;
 pub mod quantities;
 pub mod render;
+pub mod shown;
 mod svg;
 pub(crate) mod text;
 pub mod ticks;
