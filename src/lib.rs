@@ -39,6 +39,8 @@ pub mod study;
 pub mod units;
 pub mod values;
 pub mod verify;
+#[cfg(feature = "view")]
+pub mod view;
 pub mod xml;
 
 pub use simulation::{CancelToken, Simulation, SimulationError};

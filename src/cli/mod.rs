@@ -26,6 +26,7 @@ pub mod shipped;
 pub mod sweep;
 pub mod track_file;
 pub mod verify;
+pub mod view;
 
 use crate::error::{Paint, Result, render, say};
 use clap::{Parser, Subcommand};
@@ -58,6 +59,8 @@ pub enum Command {
     Verify(verify::VerifyArgs),
     /// Describes a result file.
     Info(info::InfoArgs),
+    /// Shows a result in the browser, also one that is being written.
+    View(view::ViewArgs),
     /// Makes pictures and movies of a result file.
     Render(render::RenderArgs),
     /// Makes charts of a result file.
@@ -87,6 +90,7 @@ impl Command {
             Self::Check(args) => ("check", args.json),
             Self::Verify(args) => ("verify", args.json),
             Self::Info(args) => ("info", args.json),
+            Self::View(_) => ("view", false),
             Self::Render(args) => ("render", args.json),
             Self::Plot(args) => ("plot", args.json),
             Self::Measure(args) => ("measure", args.json),
@@ -132,6 +136,7 @@ fn act(command: Command, name: &str, form: Form) -> Result<Report> {
         Command::Check(args) => check::run(&args),
         Command::Verify(args) => verify::run(&args),
         Command::Info(args) => crash::told_as_damage(name, form, &args.result, || info::run(&args)),
+        Command::View(args) => crash::told_as_damage(name, form, &args.result, || view::run(&args)),
         Command::Render(args) => crash::told_as_damage(name, form, &args.result, || render::run(&args)),
         Command::Plot(args) => crash::told_as_damage(name, form, &args.result, || plot::run(&args)),
         Command::Measure(args) => crash::told_as_damage(name, form, &args.tracks.file, || measure::run(&args)),

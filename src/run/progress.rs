@@ -1,6 +1,7 @@
 //! Who is told where a run is.
 
 use crate::experiment::Settling;
+use crate::simulation::Simulation;
 
 /// Listens to a run.
 pub trait Report: Send {
@@ -14,6 +15,10 @@ pub trait Report: Send {
     fn begin(&mut self, time: f64, until: f64);
     /// A step ended at `time`, s.
     fn step(&mut self, time: f64, steps: u64);
+    /// After a step, what is simulated may be looked at; the run goes on when this returns.
+    fn look(&mut self, simulation: &Simulation) {
+        let _ = simulation;
+    }
     /// The run ended or stopped.
     fn end(&mut self);
 }

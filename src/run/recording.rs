@@ -105,6 +105,7 @@ impl<'a> Recording<'a> {
         if passed(before, after, self.schedule.checkpoint) && !last {
             or_stop(self.save(simulation))?;
         }
+        self.report.look(simulation);
         self.report.step(after, simulation.steps());
         if rests { ControlFlow::Break(Stop::AtRest) } else { ControlFlow::Continue(()) }
     }

@@ -53,9 +53,12 @@ const TABLE: &[(&str, &[&str])] = &[
     ("verify", &["run", "experiment", "output", "analysis"]),
     // Studies make runs, and charts of what these measured.
     ("study", &["picture", "run", "simulation", "experiment", "output", "analysis"]),
+    // The page asks for what pictures know.
+    ("view", &["picture", "run", "simulation", "experiment", "output", "analysis"]),
     (
         "cli",
         &[
+            "view",
             "study",
             "verify",
             "run",
