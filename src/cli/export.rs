@@ -1,6 +1,7 @@
 //! `pseudopod export`: frames of a result as meshes or as the values of a field, or its numbers as a table.
 
 mod args;
+mod html;
 mod model;
 mod what;
 
@@ -34,15 +35,16 @@ pub fn run(args: &ExportArgs) -> Result<Report> {
         What::Model.refuse_unused(args, path)?;
     }
     let result = ResultFile::open(&args.result)?;
-    let named = [&args.output, &args.pml, &args.lml].map(Option::as_deref);
+    let named = [&args.output, &args.html, &args.pml, &args.lml].map(Option::as_deref);
     let named: Vec<&Path> = named.into_iter().flatten().collect();
     refuse_same(&[&[args.result.as_path()], named.as_slice()].concat())?;
     named.iter().try_for_each(|path| refuse_existing(path, args.force, Named::ByUser))?;
-    let mut files: Vec<PathBuf> = [&args.pml, &args.lml].into_iter().flatten().cloned().collect();
+    let mut files: Vec<PathBuf> = [&args.html, &args.pml, &args.lml].into_iter().flatten().cloned().collect();
     if let Some(path) = &args.pml {
         let frame = args.frame.of(&result, When::Last)?;
         write_model(&result, frame, shown(&result, frame, args.cell)?, path)?;
     }
+    let page = args.html.as_deref().map(|path| html::write_page(args, path)).transpose()?;
     let untold = match &args.lml {
         Some(path) => {
             let frame = args.frame.of(&result, When::Last)?;
@@ -54,6 +56,7 @@ pub fn run(args: &ExportArgs) -> Result<Report> {
         files.extend(write(args, &result, what, output)?);
     }
     let mut report = Report::of_files(&args.result, &files);
+    report.words += &page.unwrap_or_default();
     if !untold.is_empty() {
         report.words += &format!("LML has no words for {}: they were left out\n", all_of(untold));
     }

@@ -20,17 +20,25 @@ const UNITS: [(&str, f64); 9] = [
 /// # Errors
 /// [`Error::Input`] where it is no size.
 pub fn allowed(given: Option<&str>) -> Result<Option<u64>> {
-    let Some(given) = given else { return Ok(machine()) };
+    given.map_or(Ok(machine()), |given| bytes_of("--memory", given).map(Some))
+}
+
+/// The bytes that an option asks for, as in "8 GB".
+///
+/// # Errors
+/// [`Error::Input`] where it is no size.
+pub fn bytes_of(option: &str, given: &str) -> Result<u64> {
     let text = given.trim();
     let (number, unit) = text.split_at(text.find(|c: char| c.is_alphabetic()).unwrap_or(text.len()));
     let unit = unit.trim();
     let size = UNITS.iter().find(|(name, _)| name.eq_ignore_ascii_case(unit)).map(|(_, size)| size);
     let number = number.trim().parse::<f64>().ok().filter(|number| number.is_finite() && *number > 0.0);
     match (number, size) {
-        (Some(number), Some(size)) => Ok(Some((number * size) as u64)),
+        (Some(number), Some(size)) => Ok((number * size) as u64),
         _ => {
-            let fault = Fault::new(format!("--memory is \"{given}\"; a size was expected"));
-            Err(Error::input(fault.help("write a number above 0 and a unit, such as --memory \"8 GB\"; units are B, kB, MB, GB, TB and KiB, MiB, GiB, TiB")))
+            let fault = Fault::new(format!("{option} is \"{given}\"; a size was expected"));
+            let help = format!("write a number above 0 and a unit, such as {option} \"8 GB\"; units are B, kB, MB, GB, TB and KiB, MiB, GiB, TiB");
+            Err(Error::input(fault.help(help)))
         }
     }
 }

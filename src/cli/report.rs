@@ -24,6 +24,25 @@ pub struct Report {
     pub facts: Map<String, Value>,
     /// What failed though the command did its work: it is told after the words, and decides the exit status.
     pub failure: Option<Error>,
+    /// What goes on after all is told.
+    pub after: After,
+}
+
+/// Work that is done once a report is printed.
+#[derive(Default)]
+pub struct After(Option<Box<dyn FnOnce()>>);
+
+impl After {
+    /// That work.
+    pub fn new(work: impl FnOnce() + 'static) -> Self {
+        Self(Some(Box::new(work)))
+    }
+}
+
+impl std::fmt::Debug for After {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.debug_tuple("After").field(&self.0.is_some()).finish()
+    }
 }
 
 impl Report {
@@ -44,7 +63,7 @@ impl Report {
     /// # Errors
     /// [`Error::Machine`] if standard output refuses; a reader that has gone away (`| head`) is no error.
     pub fn print(self, command: &str, form: Form) -> Result<Option<Error>> {
-        let Self { words, facts, failure } = self;
+        let Self { words, facts, failure, after } = self;
         match (form, &failure) {
             (Form::Words, _) => print(&words)?,
             (Form::Json, None) => print(&object_text(command, true, facts))?,
@@ -53,6 +72,9 @@ impl Report {
                 all.extend(facts);
                 print(&object_text(command, false, all))?;
             }
+        }
+        if let Some(work) = after.0 {
+            work();
         }
         Ok(failure)
     }

@@ -3,7 +3,8 @@
 use super::crash;
 use super::memory;
 use super::report::{Form, Report};
-use super::run::{How, cancelled_by_signals, reporter, tell};
+use super::run::{How, cancelled_by_signals, tell};
+use super::view::Watch;
 use crate::error::Result;
 use crate::output::{ResultFile, to_json};
 use crate::run::ResumeOptions;
@@ -42,9 +43,11 @@ pub fn run(args: &ResumeArgs) -> Result<Report> {
         };
         return Ok(Report { words, ..Report::of_files(&args.result, &[]) });
     }
-    let options = ResumeOptions { threads: args.how.threads, memory, cancel: cancelled_by_signals() };
-    let outcome = crate::run::resume(&args.result, &options, &mut *reporter(args.how.quiet))?;
-    tell(&args.result, &outcome, &args.how)
+    let cancel = cancelled_by_signals();
+    let watch = Watch::start(&args.how, &args.result, &cancel)?;
+    let options = ResumeOptions { threads: args.how.threads, memory, cancel };
+    let outcome = crate::run::resume(&args.result, &options, &mut *watch.reporter(args.how.quiet))?;
+    watch.end(tell(&args.result, &outcome, &args.how))
 }
 
 /// Reads what going on will read, so that a damaged file is told of before anything of it is changed. What is wrong with it in an

@@ -5,6 +5,7 @@ use super::files::{Named, refuse_existing};
 use super::memory;
 use super::progress::Progress;
 use super::report::{Report, path_text, paths};
+use super::view::{PageArgs, Watch};
 use crate::error::{Error, Fault, Result, say};
 use crate::experiment::Document;
 use crate::output::{Overwrite, ResultFile};
@@ -66,6 +67,12 @@ pub struct How {
     /// Makes no picture and no charts.
     #[arg(long)]
     pub no_pictures: bool,
+    /// Shows the run in the browser as it goes on, where it can be paused and stopped.
+    #[arg(long)]
+    pub view: bool,
+    /// How the page is served.
+    #[command(flatten)]
+    pub page: PageArgs,
 }
 
 /// Runs the command.
@@ -92,13 +99,14 @@ pub fn run(args: &RunArgs) -> Result<Report> {
             refuse_existing(&picture, false, Named::ByItself)?;
         }
     }
-    let options =
-        RunOptions { result: result.clone(), overwrite, threads: args.how.threads, cancel: cancelled_by_signals() };
-    let outcome = run::run(&document, &options, &mut *reporter(args.how.quiet)).inspect_err(|_| {
+    let cancel = cancelled_by_signals();
+    let watch = Watch::start(&args.how, &result, &cancel)?;
+    let options = RunOptions { result: result.clone(), overwrite, threads: args.how.threads, cancel };
+    let outcome = run::run(&document, &options, &mut *watch.reporter(args.how.quiet)).inspect_err(|_| {
         // A run that did not begin leaves no folder behind; one that holds something is not removed.
         folder.map(std::fs::remove_dir);
     })?;
-    tell(&result, &outcome, &args.how)
+    watch.end(tell(&result, &outcome, &args.how))
 }
 
 /// The result of a document for which no other file is named.

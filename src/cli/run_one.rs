@@ -16,6 +16,10 @@ pub fn run(args: &RunArgs) -> Result<Report> {
         let fault = Fault::new("no run of a study was named");
         return Err(Error::input(fault.help("give --plan and --row")));
     };
+    if args.how.view {
+        let fault = Fault::new("a run of a study is not shown as it goes on");
+        return Err(Error::input(fault.help("leave --view out: pseudopod view RESULT shows a result also while it is written")));
+    }
     let folder = match table.is_dir() {
         true => table,
         false => table.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new(".")),

@@ -1,10 +1,13 @@
 //! `pseudopod view`: shows a result in the browser.
 
-use super::report::{Report, path_text};
-use super::run::cancelled_by_signals;
-use crate::error::{Result, say};
-use crate::view::Server;
+use super::report::{After, Report, path_text};
+use super::run::{How, cancelled_by_signals, reporter};
+use crate::error::{Error, Fault, Result, say};
+use crate::run;
+use crate::simulation::CancelToken;
+use crate::view::{Live, Server, Watched};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Duration;
 
 /// Shows a result in the browser, also one that is being written.
@@ -18,9 +21,9 @@ pub struct ViewArgs {
 }
 
 /// How a page is served; `view` and runs share it.
-#[derive(Debug, Clone, clap::Args)]
+#[derive(Debug, Clone, Copy, clap::Args)]
 pub struct PageArgs {
-    /// The port at which the page is served, on this machine alone; a free one when absent.
+    /// The port at which the page is served, to this machine alone; a free one when absent.
     #[arg(long, value_name = "NUMBER", default_value_t = 0, hide_default_value = true)]
     pub port: u16,
     /// Opens the page in the browser.
@@ -41,6 +44,64 @@ pub fn run(args: &ViewArgs) -> Result<Report> {
         std::thread::sleep(Duration::from_millis(50));
     }
     Ok(Report::default().fact("result", path_text(&args.result)).fact("address", server.address()))
+}
+
+/// A run that is watched in the browser, or is not.
+pub struct Watch(Option<Watching>);
+
+struct Watching {
+    live: Arc<Live>,
+    server: Server,
+    cancel: CancelToken,
+}
+
+impl Watch {
+    /// Serves the page of a run that is about to begin, where it is asked for.
+    ///
+    /// # Errors
+    /// A port that is taken, or a page that is asked for in part.
+    pub fn start(how: &How, result: &Path, cancel: &CancelToken) -> Result<Self> {
+        if !how.view {
+            let option = if how.page.open { "--open" } else { "--port" };
+            if how.page.open || how.page.port != 0 {
+                let fault = Fault::new(format!("{option} says how a run is shown, and it is not shown"));
+                return Err(Error::input(fault.help("add --view, or leave it out")));
+            }
+            return Ok(Self(None));
+        }
+        let live = Arc::new(Live::new(cancel.clone()));
+        let server = Server::start(result, how.page.port, Some(Arc::clone(&live)))?;
+        tell(&server, result, &how.page);
+        Ok(Self(Some(Watching { live, server, cancel: cancel.clone() })))
+    }
+
+    /// Who listens to the run.
+    pub fn reporter(&self, quiet: bool) -> Box<dyn run::Report> {
+        let other = reporter(quiet);
+        match &self.0 {
+            Some(Watching { live, .. }) => Box::new(Watched::new(Arc::clone(live), other)),
+            None => other,
+        }
+    }
+
+    /// The run has ended, and this is told of it. The page stays for as long as somebody has it open.
+    ///
+    /// # Errors
+    /// That of `told`.
+    pub fn end(self, told: Result<Report>) -> Result<Report> {
+        let Some(Watching { live, server, cancel }) = self.0 else { return told };
+        live.end();
+        let told = told?;
+        let stay = move || {
+            if server.pages() > 0 {
+                say("the page stays until it is closed, or Ctrl-C");
+            }
+            while server.pages() > 0 && !cancel.is_cancelled() {
+                std::thread::sleep(Duration::from_millis(100));
+            }
+        };
+        Ok(Report { after: After::new(stay), ..told })
+    }
 }
 
 /// Says where a page is, and opens it where that is wanted.

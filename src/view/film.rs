@@ -196,7 +196,7 @@ fn cut_course(mut course: Value, kept: &[usize]) -> Value {
 }
 
 /// Every so many of some frames, the last one among them.
-pub fn thinned(frames: usize, stride: usize) -> Vec<usize> {
+fn thinned(frames: usize, stride: usize) -> Vec<usize> {
     let last = frames.saturating_sub(1);
     let mut kept: Vec<usize> = (0..frames).step_by(stride.max(1)).collect();
     if kept.last().is_some_and(|kept| *kept != last) {

@@ -6,13 +6,13 @@
 mod charts;
 mod describe;
 mod film;
-pub mod live;
+mod live;
 mod pack;
 pub mod page;
 mod scene;
 mod server;
 
-pub use film::{Film, thinned};
-pub use live::{Live, Wish};
+pub use film::Film;
+pub use live::{Live, Phase, Told, Watched, Wish};
 pub use scene::{Answer, Scene};
 pub use server::Server;

@@ -11,8 +11,17 @@ pub struct ExportArgs {
     pub result: PathBuf,
     /// The file; its ending says what is written: .obj, .ply, .stl, .vtu, .pml a mesh, .pvd all frames of it, .vti, .ome.tiff a field, .csv
     /// a table. A folder for --table biotracks.
-    #[arg(short, long, value_name = "FILE", required_unless_present_any = ["pml", "lml"])]
+    #[arg(short, long, value_name = "FILE", required_unless_present_any = ["html", "pml", "lml"])]
     pub output: Option<PathBuf>,
+    /// Writes a page with everything in it, to mail and to open in a browser from the disk.
+    #[arg(long, value_name = "FILE")]
+    pub html: Option<PathBuf>,
+    /// Quantities that cells can be coloured by in the page, by commas, besides that of the document and, where they take little, all of the cells.
+    #[arg(long, value_delimiter = ',', value_name = "QUANTITY", requires = "html")]
+    pub colours: Vec<String>,
+    /// The most that the page may take, as in "20 MB", which is what it may when absent: frames are left out, evenly, where it takes more.
+    #[arg(long, value_name = "SIZE", requires = "html")]
+    pub size: Option<String>,
     /// Writes the cells of a frame as a physical model, in um: their atoms, neighbourhoods and facets.
     #[arg(long, value_name = "FILE")]
     pub pml: Option<PathBuf>,
