@@ -2,6 +2,8 @@
 
 use serde_json::{Value, json};
 
+use crate::analysis::over::Over;
+use crate::analysis::recording::Recording;
 use crate::error::Result;
 use crate::experiment::{Document, Plot, PlotKind};
 use crate::output::ResultFile;
@@ -28,14 +30,37 @@ pub fn chart(result: &ResultFile, document: &Document, plot: &Plot) -> Result<Va
         let svg = to_svg(&chart, SIZE[0], SIZE[1]);
         return Ok(json!({ "name": plot.name, "title": title, "svg": svg }));
     };
+    let at = match &plot.kind {
+        PlotKind::Curve { x, y } => points_of_frames(result, plot, x, y.as_slice())?,
+        _ => Vec::new(),
+    };
     Ok(json!({
         "name": plot.name,
+        "at": at,
         "title": chart.title,
         "cursor": cursor,
         "x": axis(&chart.x),
         "y": axis(&chart.y),
         "series": series(&chart),
     }))
+}
+
+/// Of each curve where its point is in each frame: curves themselves have their points in the order of x.
+fn points_of_frames(result: &ResultFile, plot: &Plot, x: &str, series: &[String]) -> Result<Vec<Vec<[f64; 2]>>> {
+    let names: Vec<&str> = std::iter::once(x).chain(series.iter().map(String::as_str)).collect();
+    let recording = Recording::read(result, &names)?;
+    let types = plot.cells.as_ref().map_or_else(|| result.layout().type_names(), |name| vec![name.clone()]);
+    let mut all = Vec::new();
+    for y in series {
+        for kind in &types {
+            let means = [x, y].map(|name| recording.series(name, Some(kind), Over::Mean));
+            // A system of chemistry may live in the cells of some types only.
+            if let [Ok(x), Ok(y)] = means {
+                all.push(x.into_iter().zip(y).map(<[f64; 2]>::from).collect());
+            }
+        }
+    }
+    Ok(all)
 }
 
 fn axis(axis: &Axis) -> Value {

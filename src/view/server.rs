@@ -189,7 +189,8 @@ impl Shared {
                     bytes.extend(picture.iter());
                     Reply::new("application/octet-stream", bytes)
                 }
-                None => Reply::refused(404, "no run goes on here"),
+                // Nothing to see yet, which is no fault.
+                None => Reply { status: 204, kind: "application/octet-stream", bytes: Vec::new() },
             },
             (Method::Post, wish) => match (&self.live, wish) {
                 (Some(live), "go" | "pause" | "stop") => {

@@ -5,6 +5,15 @@ import { short, ticks, unitOf } from './words.js';
 const PALETTE = ['#0072b2', '#d55e00', '#009e73', '#e69f00', '#cc79a7', '#56b4e9', '#7a828e', '#b8a800'];
 const MARGIN = { left: 54, right: 10, top: 8, bottom: 34 };
 
+/** A colour as it can be seen on the ground of the page: those that are dark on white are light on black. */
+function seen(colour) {
+  if (document.documentElement.dataset.theme !== 'dark') return colour;
+  const parts = [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16));
+  const bright = 0.3 * parts[0] + 0.6 * parts[1] + 0.1 * parts[2];
+  const share = bright < 130 ? 0.55 * (1 - bright / 255) + 0.1 : 0;
+  return `rgb(${parts.map((part) => Math.round(part + share * (255 - part))).join(',')})`;
+}
+
 /** One chart in the page. */
 export class Chart {
   constructor(parent, about) {
@@ -144,10 +153,11 @@ export class Chart {
   series(context, px, py, number) {
     let next = 0;
     let told = '';
+    let lines = 0;
     this.legends = [];
     for (const series of this.about.series) {
       const isFaint = series.kind === 'line' && series.width < 1;
-      const colour = series.colour ?? PALETTE[next % PALETTE.length];
+      const colour = seen(series.colour ?? PALETTE[next % PALETTE.length]);
       if (!series.colour) next += 1;
       context.strokeStyle = colour;
       context.fillStyle = colour;
@@ -165,7 +175,11 @@ export class Chart {
         }
         context.stroke();
         context.setLineDash([]);
-        if (!isFaint && series.points[number]) told += this.cursor(context, px, py, series, number);
+        if (!isFaint) {
+          const at = this.about.cursor === 'frame' ? this.about.at[lines] : series.points;
+          lines += 1;
+          if (at?.[number]) told += this.cursor(context, px, py, series, at[number]);
+        }
       } else if (series.kind === 'points') {
         this.points(context, px, py, series);
       } else if (series.kind === 'band') {
@@ -180,8 +194,7 @@ export class Chart {
     return told;
   }
 
-  cursor(context, px, py, series, number) {
-    const [x, y] = series.points[number];
+  cursor(context, px, py, series, [x, y]) {
     if (typeof x !== 'number' || typeof y !== 'number') return '';
     context.beginPath();
     context.arc(px(x), py(y), 4, 0, 2 * Math.PI);

@@ -17,6 +17,11 @@ export function drawMarks(context, width, height, scale, what) {
   const write = (text, x, y, align = 'left', font = '13px') => {
     context.font = `${font} ${FONT}`;
     context.textAlign = align;
+    // Read on whatever is behind it.
+    context.lineJoin = 'round';
+    context.lineWidth = 3;
+    context.strokeStyle = what.dark ? 'rgba(20, 23, 28, 0.75)' : 'rgba(255, 255, 255, 0.75)';
+    context.strokeText(text, x, y);
     context.fillText(text, x, y);
   };
   if (what.title) write(what.title, 16, 26, 'left', '600 15px');

@@ -59,7 +59,7 @@ class Served {
 
   async now() {
     const response = await fetch('now');
-    return response.ok ? response.arrayBuffer() : undefined;
+    return response.status === 200 ? response.arrayBuffer() : undefined;
   }
 
   want(wish) {
