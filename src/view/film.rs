@@ -31,7 +31,7 @@ pub struct Film {
 }
 
 impl Film {
-    /// The answers of a result that a page may ask for, in no more than `limit` bytes before they are made into text, if that can be. Of quantities there
+    /// The answers of a result that a page may ask for, in no more than `limit` bytes of text, if that can be. Of quantities there
     /// are those that are named, what the document colours by, and all of the cells where these take little.
     ///
     /// # Errors
@@ -85,11 +85,12 @@ impl Film {
                 now.push((request, bytes));
             }
             before = now;
-            if film.bytes.len() > limit {
+            if text_size(film.bytes.len()) > limit {
                 return Ok(Err(number + 1));
             }
         }
-        Ok(Ok(film))
+        let is_short = film.to_base64().len() <= limit;
+        Ok(if is_short { Ok(film) } else { Err(kept.len()) })
     }
 
     /// Adds an answer, told by how it differs from another of its size.
@@ -102,17 +103,16 @@ impl Film {
         self.index.push(json!([request, start, packed, bytes.len(), before.map(|(name, _)| name)]));
     }
 
-    /// Its size in bytes, as part of a page.
-    pub fn size(&self) -> usize {
-        self.bytes.len().div_ceil(3) * 4
-    }
-
-    /// The index, a line, and the packed answers in base 64.
+    /// The length of the packed index, and in base 64 the index, JSON, and the packed answers.
     pub(super) fn to_base64(&self) -> String {
-        // Names of documents could end the element that this stands in.
-        let index = Value::from(self.index.clone()).to_string().replace('<', "\\u003c");
-        format!("{index}\n{}", STANDARD.encode(&self.bytes))
+        let index = deflated(Value::from(self.index.clone()).to_string().as_bytes());
+        format!("{} {}", index.len(), STANDARD.encode([index.as_slice(), &self.bytes].concat()))
     }
+}
+
+/// What so many bytes take in base 64.
+fn text_size(bytes: usize) -> usize {
+    bytes.div_ceil(3) * 4
 }
 
 /// What is asked for once, and of each frame: what stands before the number of the frame, and behind it.

@@ -27,7 +27,7 @@ function firstFrame(source) {
 
 async function main() {
   say('Loading …');
-  const source = openSource();
+  const source = await openSource();
   if (source.isServed) await firstFrame(source);
   const [scene, course] = await Promise.all([json(source, 'scene'), json(source, 'course')]);
   const viewer = new Viewer(source, scene, course, say);

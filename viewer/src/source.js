@@ -76,17 +76,28 @@ class Served {
   }
 }
 
-/** Data that stand in the page: an index, a line of JSON, and the packed answers in base 64. */
+async function inflated(bytes) {
+  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate'));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
+}
+
+/** Data that stand in the page: an index and the packed answers. */
 class Film {
-  constructor(text) {
-    const line = text.indexOf('\n');
-    this.index = new Map(JSON.parse(text.slice(0, line)).map(([request, ...rest]) => [request, rest]));
-    const letters = atob(text.slice(line + 1).trim());
-    this.packed = new Uint8Array(letters.length);
-    for (let at = 0; at < letters.length; at += 1) this.packed[at] = letters.charCodeAt(at);
-    this.kept = new Kept();
-    this.asked = new Map();
-    this.isServed = false;
+  /** Reads the length of the index, and in base 64 the index and the packed answers. */
+  static async of(text) {
+    const gap = text.indexOf(' ');
+    const length = Number(text.slice(0, gap));
+    const letters = atob(text.slice(gap + 1).trim());
+    const all = new Uint8Array(letters.length);
+    for (let at = 0; at < letters.length; at += 1) all[at] = letters.charCodeAt(at);
+    const film = new Film();
+    const index = JSON.parse(new TextDecoder().decode(await inflated(all.subarray(0, length))));
+    film.index = new Map(index.map(([request, ...rest]) => [request, rest]));
+    film.packed = all.subarray(length);
+    film.kept = new Kept();
+    film.asked = new Map();
+    film.isServed = false;
+    return film;
   }
 
   async bytes(request) {
@@ -114,8 +125,7 @@ class Film {
     const known = this.kept.get(request);
     if (known) return known;
     const [start, length, size, before] = this.index.get(request);
-    const stream = new Blob([this.packed.subarray(start, start + length)]).stream().pipeThrough(new DecompressionStream('deflate'));
-    const bytes = new Uint8Array(await new Response(stream).arrayBuffer());
+    const bytes = await inflated(this.packed.subarray(start, start + length));
     if (bytes.length !== size) throw new Error(`${request} is damaged`);
     let answer = bytes.buffer;
     if (before) {
@@ -131,12 +141,12 @@ class Film {
 }
 
 /** The source of this page. */
-export function openSource() {
+export async function openSource() {
   const film = document.getElementById('film');
   if (!film) return new Served();
   const text = film.textContent;
   film.remove();
-  return new Film(text);
+  return Film.of(text);
 }
 
 /** An answer of JSON; undefined where there is no such thing. */

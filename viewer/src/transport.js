@@ -114,11 +114,14 @@ export class Transport {
       viewer.course = await json(viewer.source, 'course');
       viewer.side.grown();
       this.told();
-      const isFollowed = byId('follow').checked && (this.run || running);
-      if (isFollowed && !this.isPlaying && (!this.follows || viewer.state.colour !== 'type')) await viewer.show(viewer.frames - 1);
     }
     if (this.follows && !this.isWatching) this.watch();
-    if (run?.phase === 'ended' && viewer.live) await viewer.show(viewer.frames - 1);
+    // The last frame that there is, unless what is seen is newer.
+    const isBehind = viewer.state.frame < viewer.frames - 1 || viewer.live;
+    const isFollowed = (run || running || this.wasRunning) && byId('follow').checked && !this.isPlaying;
+    const showsNow = this.follows && viewer.state.colour === 'type';
+    if (isFollowed && isBehind && !showsNow) await viewer.show(viewer.frames - 1);
+    this.wasRunning = running;
   }
 
   progress(run, running) {
@@ -136,13 +139,15 @@ export class Transport {
     let last;
     while (this.follows) {
       const wait = new Promise((done) => { setTimeout(done, NOW); });
-      const bytes = viewer.state.colour === 'type' && !document.hidden ? await viewer.source.now() : undefined;
+      const asks = viewer.state.colour === 'type' && !document.hidden;
+      // A program that has ended answers no more, and the events tell so.
+      const bytes = asks ? await viewer.source.now().catch(() => undefined) : undefined;
       const time = bytes && new DataView(bytes).getFloat64(0, true);
       if (bytes && this.follows && time !== last) viewer.showNow(bytes);
-      last = time;
+      last = time ?? last;
       await wait;
     }
     this.isWatching = false;
-    if (viewer.live) await viewer.show(viewer.frames - 1);
+    if (viewer.live) await viewer.show(viewer.frames - 1).catch(() => {});
   }
 }

@@ -20,13 +20,17 @@ pub fn write_page(args: &ExportArgs, path: &Path) -> Result<String> {
     scene.with_result(|result| args.colours.iter().try_for_each(|name| Shown::named(result, name).map(drop)))?;
     // The page itself is there whatever is in it.
     let rest = usize::try_from(size).unwrap_or(usize::MAX).saturating_sub(page::self_contained(&Film::default()).len());
-    let film = Film::of(&mut scene, &args.colours, rest / 4 * 3)?;
+    let film = Film::of(&mut scene, &args.colours, rest)?;
     let text = page::self_contained(&film);
     std::fs::write(path, &text).map_err(|error| Error::Machine {
         message: format!("{} could not be written: {error}", path.display()),
         help: "name a file that you may write to".into(),
     })?;
     let taken = text.len() as f64 / 1e6;
+    if text.len() as u64 > size {
+        let frames = film.frames;
+        return Ok(format!("{frames} of {} frames, {taken:.1} MB: no page is smaller\n", film.of));
+    }
     Ok(match film.frames == film.of {
         true => format!("{} frames, {taken:.1} MB\n", film.frames),
         false => format!("{} of {} frames, {taken:.1} MB: --size lets it take more\n", film.frames, film.of),
