@@ -37,7 +37,9 @@ pub fn bytes_of(option: &str, given: &str) -> Result<u64> {
         (Some(number), Some(size)) => Ok((number * size) as u64),
         _ => {
             let fault = Fault::new(format!("{option} is \"{given}\"; a size was expected"));
-            let help = format!("write a number above 0 and a unit, such as {option} \"8 GB\"; units are B, kB, MB, GB, TB and KiB, MiB, GiB, TiB");
+            let help = format!(
+                "write a number above 0 and a unit, such as {option} \"8 GB\"; units are B, kB, MB, GB, TB and KiB, MiB, GiB, TiB"
+            );
             Err(Error::input(fault.help(help)))
         }
     }

@@ -18,7 +18,9 @@ pub fn run(args: &RunArgs) -> Result<Report> {
     };
     if args.how.view {
         let fault = Fault::new("a run of a study is not shown as it goes on");
-        return Err(Error::input(fault.help("leave --view out: pseudopod view RESULT shows a result also while it is written")));
+        return Err(Error::input(
+            fault.help("leave --view out: pseudopod view RESULT shows a result also while it is written"),
+        ));
     }
     let folder = match table.is_dir() {
         true => table,

@@ -63,7 +63,8 @@ impl Shown {
 
     /// All names that [`Shown::named`] knows for this result.
     pub fn names(result: &ResultFile) -> Vec<String> {
-        let is_there = |name: &&str| AtomQuantity::named(name).is_some_and(|known| known.is_in(result).unwrap_or(false));
+        let is_there =
+            |name: &&str| AtomQuantity::named(name).is_some_and(|known| known.is_in(result).unwrap_or(false));
         let mut names: Vec<String> = ["type".to_owned()].into();
         names.extend(AtomQuantity::names().filter(is_there).map(str::to_owned));
         names.extend(result.layout().membranes.iter().map(|membrane| membrane.name.clone()));

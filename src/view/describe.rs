@@ -27,9 +27,10 @@ pub fn scene(result: &ResultFile, document: &Document) -> Result<Value> {
         json!({ "name": kind.name, "colour": colour.hex(), "atoms": kind.atoms, "facets": kind.facets, "links": kind.links })
     });
     let picture = &document.experiment.picture;
-    let charts = document.experiment.plot.iter().map(|plot| {
-        json!({ "name": plot.name, "title": plot.title.as_ref().unwrap_or(&document.experiment.title) })
-    });
+    let charts =
+        document.experiment.plot.iter().map(
+            |plot| json!({ "name": plot.name, "title": plot.title.as_ref().unwrap_or(&document.experiment.title) }),
+        );
     let mut lines = Vec::new();
     lines.extend(layout.fibres.then_some("fibres"));
     lines.extend(layout.contacts.then_some("contacts"));

@@ -61,7 +61,12 @@ impl Film {
     }
 
     /// The film of these frames; the number of those that went in where it is too long.
-    fn packed(scene: &Scene, named: &[String], kept: &[usize], limit: usize) -> Result<std::result::Result<Self, usize>> {
+    fn packed(
+        scene: &Scene,
+        named: &[String],
+        kept: &[usize],
+        limit: usize,
+    ) -> Result<std::result::Result<Self, usize>> {
         let mut film = Self { frames: kept.len(), of: scene.with_result(|result| result.frames()), ..Self::default() };
         let about = parsed(scene, "scene")?;
         let course = cut_course(parsed(scene, "course")?, kept);
@@ -80,7 +85,8 @@ impl Film {
                 let Some(answer) = scene.answer(&format!("{first}/{frame}{rest}"))? else { continue };
                 let request = format!("{first}/{number}{rest}");
                 let bytes = answer.bytes().to_vec();
-                let like = |(other, _): &&(String, Vec<u8>)| *other == format!("{first}/{}{rest}", number.wrapping_sub(1));
+                let like =
+                    |(other, _): &&(String, Vec<u8>)| *other == format!("{first}/{}{rest}", number.wrapping_sub(1));
                 film.add(&request, &bytes, before.iter().find(like).map(|(name, bytes)| (name.as_str(), &bytes[..])));
                 now.push((request, bytes));
             }
@@ -131,16 +137,19 @@ impl Asked {
         };
         let cells = scene.with_result(|result| result.known_cells().len());
         let all = about["quantities"].as_array().into_iter().flatten();
-        let of_cells: Vec<String> = all
-            .filter(|one| one["of"] == "cells")
-            .filter_map(|one| one["name"].as_str().map(str::to_owned))
-            .collect();
+        let of_cells: Vec<String> =
+            all.filter(|one| one["of"] == "cells").filter_map(|one| one["name"].as_str().map(str::to_owned)).collect();
         let takes_little = 4 * cells * frames * of_cells.len() <= limit / NUMBERS;
         let coloured = about["look"]["colour_by"].as_str().filter(|name| *name != "type");
-        let mut quantities: Vec<String> = coloured.into_iter().map(str::to_owned).chain(named.iter().cloned()).collect();
+        let mut quantities: Vec<String> =
+            coloured.into_iter().map(str::to_owned).chain(named.iter().cloned()).collect();
         quantities.extend(of_cells.into_iter().filter(|_| takes_little));
         let mut unique = Vec::with_capacity(quantities.len());
-        quantities.into_iter().for_each(|name| if !unique.contains(&name) { unique.push(name) });
+        quantities.into_iter().for_each(|name| {
+            if !unique.contains(&name) {
+                unique.push(name)
+            }
+        });
         let quantities: Vec<String> = unique;
         let mut fields = Vec::new();
         for field in about["fields"].as_array().into_iter().flatten() {
@@ -161,7 +170,9 @@ impl Asked {
     /// What the page is told of the scene, with no more quantities than there are in the film.
     fn told(&self, mut about: Value) -> Value {
         if let Some(all) = about["quantities"].as_array_mut() {
-            all.retain(|one| one["name"].as_str().is_some_and(|name| self.quantities.iter().any(|known| known == name)));
+            all.retain(|one| {
+                one["name"].as_str().is_some_and(|name| self.quantities.iter().any(|known| known == name))
+            });
         }
         debug_assert!(self.fields.len() <= self.each.len());
         about

@@ -89,8 +89,7 @@ pub struct Live {
 impl Live {
     /// A run that has not begun, and that this token ends.
     pub fn new(cancel: CancelToken) -> Self {
-        let told =
-            Told { phase: Phase::Preparing, time: 0.0, until: 0.0, steps: 0, picture: 0, words: String::new() };
+        let told = Told { phase: Phase::Preparing, time: 0.0, until: 0.0, steps: 0, picture: 0, words: String::new() };
         let inner = Mutex::new(Inner { told, wish: Wish::Go, picture: None, asked: None });
         Self { inner, changed: Condvar::new(), cancel }
     }
@@ -161,7 +160,8 @@ impl Watched {
             return;
         }
         let kinds = (0..).zip(simulation.types());
-        let cells = kinds.flat_map(|(kind, known)| known.cells().map(move |id| Cell { id: id.number(), kind, parent: None }));
+        let cells =
+            kinds.flat_map(|(kind, known)| known.cells().map(move |id| Cell { id: id.number(), kind, parent: None }));
         let cells: Vec<Cell> = cells.collect();
         let packed = Arc::new(pack::frame(&cells, &positions, &Box3::around(&positions)));
         self.next = Instant::now() + INTERVAL.max(SPARED * began.elapsed());

@@ -11,7 +11,8 @@ const PAGE: &str = include_str!("../../viewer/page.html");
 const MARKS: [&str; 3] = ["<!-- style -->", "<!-- data -->", "<!-- script -->"];
 
 /// What a page from the disk may load: nothing but what is in it.
-const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:; media-src blob:";
+const POLICY: &str =
+    "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:; media-src blob:";
 
 fn filled(parts: [&str; 3]) -> String {
     let mut page = PAGE.to_owned();
@@ -23,11 +24,7 @@ fn filled(parts: [&str; 3]) -> String {
 
 /// The page that loads its parts from where it came from.
 pub fn served() -> String {
-    filled([
-        "<link rel=\"stylesheet\" href=\"style.css\">",
-        "",
-        "<script type=\"module\" src=\"viewer.js\"></script>",
-    ])
+    filled(["<link rel=\"stylesheet\" href=\"style.css\">", "", "<script type=\"module\" src=\"viewer.js\"></script>"])
 }
 
 /// The page with everything in it, to mail and to open from the disk.

@@ -183,7 +183,8 @@ impl Scene {
             }
             "contacts" if layout.contacts => {
                 let centre = |atoms: std::ops::Range<usize>| {
-                    let (sum, count) = (positions[atoms.clone()].iter().map(|at| Vec3::from(*at)).sum::<Vec3>(), atoms.len());
+                    let (sum, count) =
+                        (positions[atoms.clone()].iter().map(|at| Vec3::from(*at)).sum::<Vec3>(), atoms.len());
                     <[f64; 3]>::from(sum / count.max(1) as f64)
                 };
                 let centres = cells.iter().zip(layout.atoms_of(&cells)).map(|(cell, atoms)| (cell.id, centre(atoms)));
@@ -194,7 +195,8 @@ impl Scene {
             "traction" => match result.tractions(frame)? {
                 Some(all) => {
                     let strongest = self.range(result, "traction")?.map_or(0.0, |ends| ends[1]);
-                    let boxes = layout.atoms_of(&cells).map(|atoms| Vec3::from(Box3::around(&positions[atoms]).sides).norm());
+                    let boxes =
+                        layout.atoms_of(&cells).map(|atoms| Vec3::from(Box3::around(&positions[atoms]).sides).norm());
                     let typical = boxes.sum::<f64>() / cells.len().max(1) as f64;
                     tractions(&positions, &all.traction, strongest, TRACTION_LENGTH * typical)
                 }

@@ -166,7 +166,8 @@ impl Shared {
     /// Whether a request names this machine, and comes from its own page where it says from which.
     fn is_from_here(&self, request: &Request) -> bool {
         let header = |name: &str| {
-            let found = request.headers().iter().find(|header| header.field.as_str().as_str().eq_ignore_ascii_case(name));
+            let found =
+                request.headers().iter().find(|header| header.field.as_str().as_str().eq_ignore_ascii_case(name));
             found.map(|header| header.value.as_str().to_owned())
         };
         let is_here = |name: &str| {
@@ -203,10 +204,9 @@ impl Shared {
                 }
                 _ => Reply::refused(404, "no run goes on here"),
             },
-            (Method::Get, below) => below.strip_prefix("data/").map_or_else(
-                || Reply::refused(404, "nothing is here"),
-                |request| self.data(request),
-            ),
+            (Method::Get, below) => below
+                .strip_prefix("data/")
+                .map_or_else(|| Reply::refused(404, "nothing is here"), |request| self.data(request)),
             _ => Reply::refused(405, "this is neither asked for nor told so"),
         }
     }

@@ -5,3 +5,5 @@ mod example;
 mod fields;
 mod plots;
 mod populations;
+#[cfg(feature = "view")]
+mod view;
