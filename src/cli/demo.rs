@@ -1,7 +1,8 @@
 //! `pseudopod demo`: the experiments that ship, listed, or one of them copied and run.
 
+use super::how::How;
 use super::report::{Report, path_text};
-use super::run::{self, How, RunArgs};
+use super::run::{self, RunArgs};
 use super::shipped::{Shipped, about, experiments, seconds};
 use crate::error::{Error, Fault, Result, say};
 use serde_json::{Value, json};

@@ -1,9 +1,10 @@
 //! `pseudopod fit`: fits parameters of an experiment to data.
 
 use super::files::{Named, refuse_existing};
+use super::how::cancelled_by_signals;
 use super::memory;
 use super::report::{Report, path_text, paths};
-use super::run::{cancelled_by_signals, default_name, make_folder};
+use super::run::{default_name, make_folder};
 use crate::error::{Result, say, short};
 use crate::picture::save_stacked;
 use crate::study::fit::charts::figures;

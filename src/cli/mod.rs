@@ -9,6 +9,7 @@ pub mod export;
 pub mod files;
 pub mod fit;
 pub mod frames;
+pub mod how;
 pub mod info;
 pub mod measure;
 pub mod memory;

@@ -1,9 +1,10 @@
 //! `pseudopod resume`: goes on with a run from its last checkpoint.
 
 use super::crash;
+use super::how::{How, cancelled_by_signals};
 use super::memory;
 use super::report::{Form, Report};
-use super::run::{How, cancelled_by_signals, tell};
+use super::run::tell;
 use super::view::Watch;
 use crate::error::Result;
 use crate::output::{ResultFile, to_json};

@@ -2,15 +2,14 @@
 
 use super::claims::Claims;
 use super::files::{Named, refuse_existing};
+use super::how::{How, cancelled_by_signals};
 use super::memory;
-use super::progress::Progress;
 use super::report::{Report, path_text, paths};
-use super::view::{PageArgs, Watch};
-use crate::error::{Error, Fault, Result, say};
+use super::view::Watch;
+use crate::error::{Error, Fault, Result};
 use crate::experiment::Document;
 use crate::output::{Overwrite, ResultFile};
-use crate::run::{self, Outcome, Quiet, RunOptions};
-use crate::simulation::CancelToken;
+use crate::run::{self, Outcome, RunOptions};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -50,29 +49,6 @@ pub struct RunArgs {
     /// How it is run.
     #[command(flatten)]
     pub how: How,
-}
-
-/// Options that `run` and `resume` share.
-#[derive(Debug, Clone, clap::Args)]
-pub struct How {
-    /// Threads; the result does not depend on it.
-    #[arg(long)]
-    pub threads: Option<usize>,
-    /// Says nothing but errors.
-    #[arg(short, long)]
-    pub quiet: bool,
-    /// Prints what was done as JSON.
-    #[arg(long)]
-    pub json: bool,
-    /// Makes no picture and no charts.
-    #[arg(long)]
-    pub no_pictures: bool,
-    /// Shows the run in the browser as it goes on, where it can be paused and stopped.
-    #[arg(long)]
-    pub view: bool,
-    /// How the page is served.
-    #[command(flatten)]
-    pub page: PageArgs,
 }
 
 /// Runs the command.
@@ -135,27 +111,6 @@ pub fn make_folder(folder: &Path) -> Result<()> {
         message: format!("the folder {} could not be made: {error}", folder.display()),
         help: "name a result file in a folder you may write to with -o".into(),
     })
-}
-
-/// A token that the first signal cancels, so that the run stops after its step; a second signal ends the program at once.
-pub fn cancelled_by_signals() -> CancelToken {
-    let token = CancelToken::new();
-    let heard = token.clone();
-    let listening = ctrlc::set_handler(move || {
-        if heard.is_cancelled() {
-            std::process::exit(130);
-        }
-        heard.cancel();
-        say("stopping after this step; once more to stop at once");
-    });
-    // A program that has a handler of its own stops as that one says.
-    drop(listening);
-    token
-}
-
-/// Who listens to a run: nobody where it shall be quiet.
-pub fn reporter(quiet: bool) -> Box<dyn run::Report> {
-    if quiet { Box::new(Quiet) } else { Box::new(Progress::default()) }
 }
 
 /// Makes the pictures and says what was done.

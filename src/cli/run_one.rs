@@ -1,8 +1,9 @@
 //! `pseudopod run --plan`: makes one run of a study, for whoever runs studies.
 
+use super::how::{How, cancelled_by_signals, reporter};
 use super::memory;
 use super::report::Report;
-use super::run::{How, RunArgs, cancelled_by_signals, reporter, tell};
+use super::run::{RunArgs, tell};
 use crate::error::{Error, Fault, Paint, Result, render, say};
 use crate::study::{Complete, Done, Files, OneOptions, Plan, run_one};
 use std::path::Path;

@@ -2,9 +2,10 @@
 
 use super::claims::claim_object;
 use super::crash;
+use super::how::{cancelled_by_signals, reporter};
 use super::memory;
 use super::report::{Form, Report, path_text};
-use super::run::{cancelled_by_signals, default_name, make_folder, reporter};
+use super::run::{default_name, make_folder};
 use crate::analysis::claims::ClaimResult;
 use crate::error::{Error, Fault, Paint, Result, render, say};
 use crate::output::Overwrite;

@@ -1,7 +1,7 @@
 //! `pseudopod view`: shows a result in the browser.
 
+use super::how::{How, PageArgs, cancelled_by_signals, reporter};
 use super::report::{After, Report, path_text};
-use super::run::{How, cancelled_by_signals, reporter};
 use crate::error::{Error, Fault, Result, say};
 use crate::run;
 use crate::simulation::CancelToken;
@@ -18,17 +18,6 @@ pub struct ViewArgs {
     /// How the page is served.
     #[command(flatten)]
     pub page: PageArgs,
-}
-
-/// How a page is served; `view` and runs share it.
-#[derive(Debug, Clone, Copy, clap::Args)]
-pub struct PageArgs {
-    /// The port at which the page is served, to this machine alone; a free one when absent.
-    #[arg(long, value_name = "NUMBER", default_value_t = 0, hide_default_value = true)]
-    pub port: u16,
-    /// Opens the page in the browser.
-    #[arg(long)]
-    pub open: bool,
 }
 
 /// Runs the command.
