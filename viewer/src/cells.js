@@ -19,6 +19,10 @@ uniform usampler2D cornersOf;
 uniform sampler2D numbers;
 uniform vec3 low, sides;
 uniform int shows; // 0 types, 1 a number a cell, 2 a number an atom
+#ifdef SHADOW
+uniform vec3 ground, floor_, fall;
+uniform float lift;
+#endif
 in vec3 corners; // three corners of the mesh
 in vec3 weights; // of the second and of the third; whether the skin is bent between them
 in vec2 owner;   // first atom, number of the cell
@@ -69,7 +73,24 @@ void main() {
     number = w[0] * f[0] + w[1] * f[1] + w[2] * f[2];
   }
   if (shows == 1) number = texelFetch(numbers, at(cell), 0).x;
+#ifdef SHADOW
+  // Along the light onto the floor, a little above it.
+  float above = dot(world - ground, floor_);
+  world += (0.002 * lift - above) * fall / dot(fall, floor_);
+#endif
   gl_Position = projectionMatrix * (viewMatrix * vec4(world, 1.0));
+}
+`;
+
+const SHADE = `
+precision highp float;
+uniform float radius;
+uniform vec3 middle;
+in vec3 world;
+out vec4 colour;
+void main() {
+  float presence = 1.0 - smoothstep(0.55, 1.0, distance(world, middle) / radius);
+  colour = vec4(0.05, 0.08, 0.14, 0.16 * presence);
 }
 `;
 
@@ -105,14 +126,6 @@ void main() {
     skin = known ? texture(map, vec2((share * 63.0 + 0.5) / 64.0, 0.5)).rgb : vec3(0.69, 0.706, 0.729);
   }
   skin = toLinear(skin);
-  if (opacity < 1.0) {
-    // Skins that are seen through are drawn in some of the pixels, so that their order does not matter.
-    float facing = abs(dot(normalize(bent), viewer));
-    float share = opacity + (1.0 - opacity) * pow(1.0 - facing, 2.0);
-    ivec2 p = (ivec2(gl_FragCoord.xy) + cell * ivec2(3, 5)) & 3;
-    int bayer = ((p.x ^ p.y) & 1) * 8 + (p.y & 1) * 4 + (((p.x ^ p.y) >> 1) & 1) * 2 + ((p.y >> 1) & 1);
-    if (share * 16.0 <= float(bayer) + 0.5) discard;
-  }
   vec3 normal = normalize(bent);
   if (!gl_FrontFacing) {
     if (cut.w < 1e29 && opacity >= 1.0) {
@@ -124,7 +137,10 @@ void main() {
   }
   float facing = dot(normal, viewer);
   if (facing < 0.05) normal = normalize(normal + (0.05 - facing) * viewer);
-  colour = vec4(lit(skin, normal, viewer), 1.0);
+  // A thin skin seen edge on is looked through at a slant and hides more.
+  float slant = 1.0 - clamp(facing, 0.0, 1.0);
+  colour = vec4(lit(skin, normal, viewer), opacity + (1.0 - opacity) * slant * slant);
+  if (!gl_FrontFacing) colour.a *= opacity < 1.0 ? 0.4 : 1.0;
   if (cell == chosen) colour.rgb = mix(colour.rgb, vec3(1.0, 0.85, 0.1), 0.2 + 0.6 * pow(1.0 - clamp(facing, 0.0, 1.0), 2.0));
 }
 `;
@@ -179,11 +195,35 @@ export class Cells {
       const paint = new THREE.Vector3(...[1, 3, 5].map((at) => parseInt(type.colour.slice(at, at + 2), 16) / 255));
       const mesh = new THREE.Mesh(undefined, material(FRAGMENT, paint));
       mesh.frustumCulled = false;
+      mesh.renderOrder = 1;
       mesh.visible = false;
-      mesh.userData = { skin: mesh.material, pick: material(PICK, paint) };
+      mesh.userData = { skin: mesh.material, pick: material(PICK, paint), shade: material(SHADE, paint) };
       this.group.add(mesh);
       return mesh;
     });
+    // Where there is a floor cells stand on it: what they darken, each pixel once.
+    this.shadows = new THREE.Group();
+    this.floor = { ground: { value: new THREE.Vector3() }, floor_: { value: new THREE.Vector3(0, 0, 1) }, fall: { value: new THREE.Vector3(0, 0, -1) }, lift: { value: 1 }, radius: { value: 1 }, middle: { value: new THREE.Vector3() } };
+    for (const mesh of this.meshes) {
+      const { shade } = mesh.userData;
+      Object.assign(shade.uniforms, this.floor);
+      Object.assign(shade, {
+        defines: { SHADOW: 1 }, transparent: true, depthWrite: false,
+        stencilWrite: true, stencilFunc: THREE.EqualStencilFunc, stencilRef: 0, stencilZPass: THREE.IncrementStencilOp,
+      });
+      const shadow = new THREE.Mesh(mesh.geometry, shade);
+      shadow.frustumCulled = false;
+      shadow.renderOrder = -1;
+      mesh.userData.shadow = shadow;
+      this.shadows.add(shadow);
+    }
+    this.shadows.visible = false;
+  }
+
+  /** How much skins hide; what is seen through is drawn after all else, its far side before its near one. */
+  hides(opacity) {
+    this.shared.opacity.value = opacity;
+    for (const { userData: { skin } } of this.meshes) Object.assign(skin, { transparent: opacity < 1, depthWrite: opacity >= 1, forceSinglePass: opacity >= 1 });
   }
 
   /** Colours of a scale, in sRGB. */
@@ -234,6 +274,7 @@ export class Cells {
       const count = this.counts[kind];
       mesh.userData.count = count;
       mesh.visible = count > 0 && !this.hidden.has(kind);
+      mesh.userData.shadow.visible = mesh.visible;
       if (count === 0) return;
       if (!mesh.userData.made) this.make(mesh, kind, this.firsts[frame.kinds.indexOf(kind)]);
       const owner = new Float32Array(2 * count);
@@ -253,7 +294,9 @@ export class Cells {
       geometry.instanceCount = count;
       mesh.geometry.dispose();
       mesh.geometry = geometry;
+      mesh.userData.shadow.geometry = geometry;
     });
+    this.shade();
   }
 
   /** The mesh of a type, as its first cell has it, whose atoms begin here. */
@@ -267,7 +310,7 @@ export class Cells {
     for (let corner = 0; corner < corners.length / 3; corner += 1) cornersOf.image.data.set(corners.slice(3 * corner, 3 * corner + 3), 4 * corner);
     cornersOf.needsUpdate = true;
     mesh.userData.made = made;
-    for (const { uniforms } of [mesh.userData.skin, mesh.userData.pick]) {
+    for (const { uniforms } of [mesh.userData.skin, mesh.userData.pick, mesh.userData.shade]) {
       uniforms.rings.value = rings;
       uniforms.cornersOf.value = cornersOf;
     }
@@ -301,10 +344,33 @@ export class Cells {
     shared.ends.value.set(...ends);
   }
 
+  /** Shadows cost as much as the cells: large scenes go without. */
+  shade() {
+    const drawn = this.meshes.reduce((sum, { userData }) => sum + (userData.count ?? 0) * (userData.refined?.index.count ?? 0) / 3, 0);
+    this.shadows.visible = Boolean(this.standing) && drawn < 350_000;
+  }
+
+  /** A floor that cells darken: a point, its unit normal, and how far it is seen from there, µm; none without one. */
+  stand(floor) {
+    this.standing = floor;
+    this.shade();
+    if (!floor) return;
+    const { ground, floor_, fall, lift, radius, middle } = this.floor;
+    ground.value.copy(floor.point);
+    middle.value.copy(floor.point);
+    floor_.value.copy(floor.normal);
+    // A light that stands high, a little to the left and before.
+    fall.value.copy(floor.normal).multiplyScalar(-1).add(new THREE.Vector3(0.22, 0.14, 0)).normalize();
+    lift.value = floor.radius;
+    radius.value = floor.radius;
+  }
+
   hide(kind, isHidden) {
     if (isHidden) this.hidden.add(kind);
     else this.hidden.delete(kind);
-    this.meshes[kind].visible = !isHidden && (this.counts?.[kind] ?? 0) > 0;
+    const mesh = this.meshes[kind];
+    mesh.visible = !isHidden && (this.counts?.[kind] ?? 0) > 0;
+    mesh.userData.shadow.visible = mesh.visible;
   }
 
   /** Draws numbers of cells in place of colours while `work` runs. */

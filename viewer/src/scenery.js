@@ -69,6 +69,7 @@ function planeOf(obstacle, box, dark) {
   mesh.matrixAutoUpdate = false;
   mesh.matrix.makeBasis(u, v, normal).setPosition(below);
   mesh.renderOrder = -2;
+  if (isFloor) mesh.userData.floor = { point: below, normal, radius };
   return mesh;
 }
 
@@ -137,6 +138,8 @@ export class Obstacles {
     this.obstacles = obstacles;
     this.meshes = obstacles.map((obstacle) => (obstacle.profile.length ? toolOf(obstacle, light) : planeOf(obstacle, box, dark)));
     this.group.add(...this.meshes);
+    /** What cells stand on, of planes that look up the one that does most. */
+    this.floor = this.meshes.map((mesh) => mesh.userData.floor).filter(Boolean).sort((one, other) => other.normal.z - one.normal.z)[0];
   }
 
   /** How far each has gone, µm. */

@@ -50,13 +50,13 @@ export class Viewer {
     const { scene, state } = this;
     this.canvas = document.getElementById('view');
     this.marks = document.getElementById('marks');
-    this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, antialias: true, preserveDrawingBuffer: true, powerPreference: 'high-performance' });
+    this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, antialias: true, stencil: true, preserveDrawingBuffer: true, powerPreference: 'high-performance' });
     this.space = new THREE.Scene();
     this.cells = new Cells(scene.types);
     this.eye = new Eye(this.canvas, () => this.dirty());
     this.screen = { value: new THREE.Vector2(1, 1) };
     this.cells.setMap(scene.maps.values);
-    this.space.add(this.cells.group);
+    this.space.add(this.cells.group, this.cells.shadows);
     this.lines = new Map();
     this.tails = new Tails(this);
     this.space.add(this.tails.lines(this.screen).mesh);
@@ -210,11 +210,14 @@ export class Viewer {
     if (key === 'colour') this.state.range = undefined;
     if ((key === 'axis' || key === 'share') && this.slice) this.slice.put(this.state.axis, this.state.share);
     if (key === 'alpha' && this.slice) this.slice.material.uniforms.alpha.value = value;
-    if (key === 'opacity') this.cells.shared.opacity.value = value;
+    if (key === 'opacity') this.cells.hides(value);
     if (key === 'lines') for (const [kind, lines] of this.lines) lines.mesh.visible = value.includes(kind);
     if (key === 'tails') this.tails.show(this.state.frame);
     if (key === 'smooth') this.cells.smooth(value);
-    if (key === 'grid') this.obstacles.group.visible = value;
+    if (key === 'grid') {
+      this.obstacles.group.visible = value;
+      this.cells.stand(value ? this.obstacles.floor : undefined);
+    }
     if (['field', 'colour', 'range', 'lines'].includes(key)) await this.show(this.state.frame);
     this.keep();
     this.dirty();
@@ -237,7 +240,8 @@ export class Viewer {
     this.obstacles.group.visible = this.state.grid;
     this.obstacles.move(this.course.gone.map((gone) => gone?.[this.state.frame]));
     this.space.add(this.obstacles.group);
-    this.cells.shared.opacity.value = this.state.opacity;
+    this.cells.stand(this.state.grid ? this.obstacles.floor : undefined);
+    this.cells.hides(this.state.opacity);
     this.dirty();
   }
 

@@ -144,6 +144,12 @@ async function looks(page, served) {
   assert.equal(png.subarray(1, 4).toString(), 'PNG');
   assert.equal(png.readUInt32BE(16), await page.evaluate(() => window.pseudopod.canvas.width));
 
+  // Everything that can be used has a name.
+  const nameless = await page.evaluate(() => [...document.querySelectorAll('button, input, select, [role="tab"], canvas:not([aria-hidden])')]
+    .filter((control) => !(control.getAttribute('aria-label') || control.labels?.[0]?.textContent.trim() || control.textContent.trim() || control.title))
+    .map((control) => control.outerHTML));
+  assert.deepEqual(nameless, []);
+
   assert.deepEqual(page.errors, []);
   const elsewhere = page.requests.filter((url) => !(served ? url.startsWith(served) : url.startsWith('file:')) && !/^(data|blob):/.test(url));
   assert.deepEqual(elsewhere, [], 'nothing is asked for from elsewhere');
@@ -165,6 +171,20 @@ test('a page from the disk', { timeout: 120_000 }, async () => {
   const page = await openPage(browser, `file://${path}`);
   await looks(page);
   await page.context().close();
+});
+
+test('a film of all frames is kept', { timeout: 120_000 }, async () => {
+  const server = await serve('view', result);
+  const page = await openPage(browser, server.address);
+  await page.selectOption('#speed', '30');
+  const [download] = await Promise.all([page.waitForEvent('download', { timeout: 90_000 }), page.getByRole('button', { name: 'Save a film' }).click()]);
+  assert.equal(download.suggestedFilename(), 'Two_cells_on_glass.webm');
+  const film = await readFile(await download.path());
+  assert.deepEqual([...film.subarray(0, 4)], [0x1a, 0x45, 0xdf, 0xa3], 'a file of Matroska or WebM');
+  assert.ok(film.length > 5_000, `${film.length} bytes`);
+  assert.equal(await page.evaluate(() => window.pseudopod.drawn.frame), 30);
+  await page.context().close();
+  await server.stop();
 });
 
 test('a page from the disk takes no more than it may', { timeout: 60_000 }, async () => {
