@@ -7,12 +7,14 @@
 mod camera;
 mod cut;
 mod floor;
+mod geometry;
 mod overlay;
 mod raster;
 mod samples;
 mod scene;
 mod shade;
 mod sheet;
+mod skin;
 mod spans;
 #[cfg(test)]
 pub(in crate::picture) mod tests;
@@ -28,7 +30,8 @@ pub use camera::{Bounds, Camera, Insets, Projection};
 pub use overlay::{FieldBar, Key, Overlay, ScaleBar, time_text};
 pub use scene::{Background, Edges, Floor, Pane, Scene, Sheet, Surface, SurfaceColour};
 
-use raster::{Band, Geometry};
+use geometry::Geometry;
+use raster::Band;
 use samples::BAND_ROWS;
 use shade::Shader;
 use view::View;

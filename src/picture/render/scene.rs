@@ -26,7 +26,8 @@ pub struct Scene {
 pub struct Surface {
     /// Positions of the atoms, µm.
     pub positions: Vec<[f64; 3]>,
-    /// Normal at each atom for smooth shading; empty to take the mean of the facets around.
+    /// Normal at each atom for smooth shading: the facets are drawn as they are. When empty, a smooth skin is drawn through the
+    /// atoms, with edges where the facets around have one.
     pub normals: Vec<[f64; 3]>,
     /// Facets: three atoms each, all turning the same way round so that normals can be averaged.
     pub facets: Vec<[u32; 3]>,
@@ -160,18 +161,8 @@ impl Surface {
         facet.iter().all(|atom| self.positions.get(*atom as usize).is_some_and(|p| p.iter().all(|v| v.is_finite())))
     }
 
-    /// The unit normal at every atom: as given, or the mean over the facets around weighted by their area.
-    pub(super) fn unit_normals(&self) -> Vec<nalgebra::Vector3<f32>> {
-        let unit = |sum: crate::Vec3| sum.try_normalize(1e-300).unwrap_or(crate::Vec3::z()).cast::<f32>();
-        if self.normals.len() == self.positions.len() {
-            return self.normals.iter().map(|n| unit(crate::Vec3::from(*n))).collect();
-        }
-        let mut sums = vec![crate::Vec3::zeros(); self.positions.len()];
-        for facet in self.facets.iter().filter(|facet| self.is_drawable(facet)) {
-            let [a, b, c] = facet.map(|atom| crate::Vec3::from(self.positions[atom as usize]));
-            let area = (b - a).cross(&(c - a));
-            facet.iter().for_each(|atom| sums[*atom as usize] += area);
-        }
-        sums.into_iter().map(unit).collect()
+    /// Whether its normals are given.
+    pub(super) fn has_normals(&self) -> bool {
+        !self.positions.is_empty() && self.normals.len() == self.positions.len()
     }
 }

@@ -4,9 +4,10 @@ use nalgebra::Vector3;
 
 use super::cut::Side;
 use super::floor::Ground;
-use super::raster::{Band, Geometry, Triangle};
+use super::geometry::{Geometry, Triangle};
+use super::raster::Band;
 use super::samples::{FLOOR, NOTHING, SAMPLES, SHEET};
-use super::scene::{Background, Edges, Pane, Scene};
+use super::scene::{Background, Pane, Scene};
 use super::sheet::Carpet;
 use super::view::{PlaneOnScreen, View};
 use crate::Vec3;
@@ -16,6 +17,8 @@ const FLOOR_COLOUR: [f32; 3] = [0.930, 0.940, 0.952];
 const GRID_COLOUR: [f32; 3] = [0.795, 0.82, 0.85];
 /// How much white there is in the colour of a cut face, as an amount of light.
 const PALE: f32 = 0.35;
+/// The least cosine between a normal that is lit and the line of sight.
+const GRAZING: f32 = 0.06;
 /// Entries of the table from linear light to sRGB: steps below a third of a grey level at the dark end.
 const GAMMA_STEPS: usize = 8192;
 
@@ -193,15 +196,13 @@ impl<'a> Shader<'a> {
             // The flat face where a body is cut.
             return (self.cut_face(paint), 1.0);
         }
-        let mut normal = mix(&geometry.normals).try_normalize(1e-12).unwrap_or(viewer);
-        if normal.dot(&viewer) < 0.0 {
-            normal = -normal;
-        }
+        let normal = mix(&geometry.normals) * if triangle.is_turned { -1.0 } else { 1.0 };
+        let normal = towards(normal.try_normalize(1e-12).unwrap_or(viewer), &viewer);
         let mut colour = self.lit(paint, &normal, &viewer);
         // A thin skin seen edge on is looked through at a slant and hides more.
         let slant = 1.0 - normal.dot(&viewer).clamp(0.0, 1.0);
         let mut share = triangle.opacity + (1.0 - triangle.opacity) * slant * slant;
-        if triangle.edges == Edges::Thin {
+        if triangle.lines != 0 {
             let line = edge_strength(geometry, triangle, area, flat, SAMPLES as f32);
             colour = colour.map(|c| c * (1.0 - 0.5 * line));
             share = share.max(0.6 * line);
@@ -232,6 +233,13 @@ impl<'a> Shader<'a> {
     }
 }
 
+/// A normal of a skin whose facet is seen: one that points away from the viewer, as where few facets go round a bend, would be lit
+/// as what is not seen and show as a black sliver. It is bent until it is at a right angle to the line of sight, and a little less.
+fn towards(normal: Vector3<f32>, viewer: &Vector3<f32>) -> Vector3<f32> {
+    let facing = normal.dot(viewer);
+    if facing >= GRAZING { normal } else { (normal + (GRAZING - facing) * viewer).normalize() }
+}
+
 /// How strongly an edge of the facet's mesh shows at a point, 0 to 1.
 fn edge_strength(geometry: &Geometry, triangle: &Triangle, area: f32, flat: [f32; 3], samples: f32) -> f32 {
     let corners = triangle.corners.map(|corner| geometry.screen[corner as usize]);
@@ -239,10 +247,12 @@ fn edge_strength(geometry: &Geometry, triangle: &Triangle, area: f32, flat: [f32
     for k in 0..3 {
         let (p, q) = (corners[(k + 1) % 3], corners[(k + 2) % 3]);
         let height = area.abs() / (p[0] - q[0]).hypot(p[1] - q[1]).max(1e-9) / samples;
-        nearest = nearest.min(flat[k] * height);
+        if triangle.lines >> k & 1 == 1 {
+            nearest = nearest.min(flat[k] * height);
+        }
         smallest = smallest.min(height);
     }
-    let visibility = ((smallest - 2.0) / 6.0).clamp(0.0, 1.0);
+    let visibility = ((smallest * f32::from(triangle.parts) - 2.0) / 6.0).clamp(0.0, 1.0);
     visibility * (1.0 - nearest).clamp(0.0, 1.0)
 }
 

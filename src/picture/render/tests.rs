@@ -56,7 +56,7 @@ fn red_cell(centre: [f64; 3], splits: usize) -> Surface {
     surface
 }
 
-fn front() -> Camera {
+pub(crate) fn front() -> Camera {
     Camera {
         eye: [0.0, -50.0, 0.0],
         target: [0.0; 3],
