@@ -4,25 +4,7 @@
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Colour(pub [u8; 3]);
 
-/// The palette of Okabe and Ito (2008), which stays distinct under all common colour deficiencies, in the order in
-/// which curves and cell types take from it.
-pub const PALETTE: [Colour; 8] = [
-    Colour([0x00, 0x72, 0xb2]), // blue
-    Colour([0xd5, 0x5e, 0x00]), // vermilion
-    Colour([0x00, 0x9e, 0x73]), // bluish green
-    Colour([0xe6, 0x9f, 0x00]), // orange
-    Colour([0xcc, 0x79, 0xa7]), // reddish purple
-    Colour([0x56, 0xb4, 0xe9]), // sky blue
-    Colour([0x3c, 0x40, 0x48]), // near black
-    Colour([0xf0, 0xe4, 0x42]), // yellow
-];
-
 impl Colour {
-    /// The colour of the palette for the curve or cell type number `index`; it repeats after eight.
-    pub fn of_palette(index: usize) -> Self {
-        PALETTE[index % PALETTE.len()]
-    }
-
     /// The form `#rrggbb` that SVG reads.
     pub fn hex(self) -> String {
         let [r, g, b] = self.0;
@@ -130,7 +112,7 @@ mod tests {
 
     #[test]
     fn hex_is_read_as_it_is_written() {
-        for colour in PALETTE {
+        for colour in [[0x00, 0x72, 0xb2], [0xf0, 0xe4, 0x42], [0, 0, 0]].map(Colour) {
             assert_eq!(Colour::from_hex(&colour.hex()), Some(colour));
         }
         assert_eq!(Colour::from_hex("#12"), None);

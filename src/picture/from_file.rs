@@ -181,10 +181,9 @@ impl<'a> Stage<'a> {
 
 fn look_of(result: &ResultFile, document: &Document, picture: &Picture, shown: &Shown) -> Look {
     let types = result.layout().type_names();
-    let palette = |i: usize| super::colour::PALETTE[i % super::colour::PALETTE.len()];
     let colour = |(i, name): (usize, &String)| {
         let given = document.experiment.cells.get(name).and_then(|cell| cell.colour);
-        given.map_or_else(|| palette(i), |colour| Colour(colour.0))
+        given.map_or_else(|| Colour::of_palette(i), |colour| Colour(colour.0))
     };
     let label = match shown {
         Shown::Type => String::new(),

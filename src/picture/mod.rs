@@ -14,6 +14,7 @@ pub mod from_result;
 pub mod image;
 mod instant;
 pub mod movie;
+pub mod palette;
 pub mod plots;
 pub mod quantities;
 pub mod render;
