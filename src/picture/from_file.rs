@@ -8,7 +8,7 @@ use super::colour::Colour;
 use super::field_view::FieldView;
 use super::from_result::{Framing, Look, Snapshot, Values, picture_of};
 use super::instant::frame_at;
-use super::quantities::AtomQuantity;
+use super::quantities::{AtomQuantity, LEAST};
 use super::render::Sheet;
 use super::{Image, plots};
 use crate::Vec3;
@@ -199,6 +199,7 @@ fn look_of(result: &ResultFile, document: &Document, picture: &Picture, shown: &
         title: document.experiment.title.clone(),
         type_colours: types.iter().enumerate().map(colour).collect(),
         range: picture.colour_range,
+        least: if matches!(shown, Shown::Atoms(_)) { LEAST } else { 0.0 },
         label,
         direction: picture.view.from,
         up: picture.view.up,

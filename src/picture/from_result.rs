@@ -6,7 +6,7 @@
 use std::collections::HashSet;
 
 use super::Image;
-use super::colour::{Colour, ColourMap};
+use super::colour::{Colour, ColourMap, scale_of};
 use super::render::{
     Bounds, Camera, Edges, FieldBar, Floor, Insets, Key, Overlay, Pane, Projection, ScaleBar, Scene, Sheet, Surface,
     SurfaceColour, basis, draw, time_text,
@@ -68,6 +68,8 @@ pub struct Look {
     pub map: ColourMap,
     /// Lowest and highest number of the colour bar; `None` takes them from the frames that were included.
     pub range: Option<[f64; 2]>,
+    /// The least difference between numbers that is more than round-off, besides a millionth of their size.
+    pub least: f64,
     /// Name of the numbers with unit.
     pub label: String,
     /// Colours of a field.
@@ -99,6 +101,7 @@ impl Default for Look {
             type_colours: Vec::new(),
             map: ColourMap::default(),
             range: None,
+            least: 0.0,
             label: String::new(),
             field_map: ColourMap::Ink,
             field_range: None,
@@ -210,7 +213,7 @@ impl Framing {
 
     /// The numbers at the ends of the colour bar.
     fn ends(&self, look: &Look) -> [f64; 2] {
-        opened(look.range.unwrap_or(self.range))
+        look.range.unwrap_or_else(|| scale_of(self.range, look.least))
     }
 
     /// The numbers at the ends of the field's colour bar.
@@ -218,16 +221,7 @@ impl Framing {
         // A field that comes close to nothing is shown from nothing on.
         let [low, high] = self.field_range;
         let from_zero = if (0.0..0.25 * high).contains(&low) { 0.0 } else { low };
-        opened(look.field_range.unwrap_or([from_zero, high]))
-    }
-}
-
-/// Two ends apart from each other.
-fn opened([low, high]: [f64; 2]) -> [f64; 2] {
-    match (low.is_finite() && high.is_finite(), high > low) {
-        (true, true) => [low, high],
-        (true, false) => [low - 0.5 * low.abs().max(1e-3), low + 0.5 * low.abs().max(1e-3)],
-        (false, _) => [0.0, 1.0],
+        look.field_range.unwrap_or_else(|| scale_of([from_zero, high], 0.0))
     }
 }
 
@@ -281,8 +275,8 @@ pub fn overlay_of(snapshot: &Snapshot, look: &Look, framing: &Framing) -> Overla
 /// As [`picture_of`].
 pub fn scene_of(snapshot: &Snapshot, look: &Look, framing: &Framing) -> Scene {
     let (layout, positions) = (snapshot.layout, snapshot.positions);
-    let [low, high] = framing.ends(look);
-    let number_colour = |value: f64| look.map.at((value - low) / (high - low));
+    let ends = framing.ends(look);
+    let number_colour = |value: f64| look.map.of_value(value, ends);
     let has_links = snapshot.cells.iter().any(|cell| !layout.types[cell.kind as usize].links.is_empty());
     // Skins are as translucent in frames without fibres as in those with them.
     let shows_inside = has_links || snapshot.fibres.is_some();
@@ -445,6 +439,14 @@ mod tests {
         assert_eq!(scene.surfaces[1].colour, SurfaceColour::Uniform(ColourMap::Viridis.at(1.0)));
         let key = overlay_of(&snapshot, &look, &framing).key;
         assert!(matches!(key, Key::Bar { low, high, .. } if low == -1.0 && high == 4.0));
+        // Exact volumes differ by round-off, which is neither a range nor two colours.
+        snapshot.values = Values::Cells(&[523.598_775_598_3, 523.598_775_598_2]);
+        let mut framing = Framing::new(&look);
+        framing.include(&snapshot);
+        let scene = scene_of(&snapshot, &look, &framing);
+        assert_eq!(scene.surfaces[0].colour, scene.surfaces[1].colour);
+        let key = overlay_of(&snapshot, &look, &framing).key;
+        assert!(matches!(key, Key::Bar { low, high, .. } if low == high));
     }
 
     #[test]

@@ -4,6 +4,7 @@
 //! scale bar and legend; [`draw`] makes an [`Image`] of the three. Rows of the picture are worked on in parallel and
 //! never share a sum, so the picture is the same to the last bit for any number of threads.
 
+mod bars;
 mod camera;
 mod cut;
 mod floor;
@@ -25,9 +26,10 @@ use rayon::prelude::*;
 
 use super::Image;
 
+pub use bars::FieldBar;
 pub(in crate::picture) use camera::basis;
 pub use camera::{Bounds, Camera, Insets, Projection};
-pub use overlay::{FieldBar, Key, Overlay, ScaleBar, time_text};
+pub use overlay::{Key, Overlay, ScaleBar, time_text};
 pub use scene::{Background, Edges, Floor, Pane, Scene, Sheet, Surface, SurfaceColour};
 
 use geometry::Geometry;
