@@ -23,6 +23,7 @@ pub mod run;
 pub mod run_one;
 pub mod schema;
 pub mod shipped;
+pub mod show;
 pub mod sweep;
 pub mod track_file;
 pub mod verify;

@@ -1,92 +1,17 @@
 //! Pictures of a result file: the frames it holds, seen as the experiment asks.
 
-use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-use super::arrows::LoadArrows;
 use super::colour::Colour;
+use super::display::Display;
 use super::field_view::FieldView;
-use super::from_result::{Framing, Look, Snapshot, Values, picture_of};
-use super::instant::frame_at;
-use super::quantities::{AtomQuantity, LEAST};
-use super::render::Sheet;
+use super::image::CutOut;
+use super::render::Background;
+use super::stage::{Stage, shown_of};
 use super::{Image, plots};
-use crate::Vec3;
-use crate::error::{Error, Fault, Result};
+use crate::error::Result;
 use crate::experiment::{Document, Picture};
-use crate::output::{Cell, FibreRow, Obstacle, ResultFile};
-
-/// What one frame gives to a picture.
-struct Shot {
-    cells: Vec<Cell>,
-    positions: Vec<[f64; 3]>,
-    values: Vec<f64>,
-    arrows: Vec<[[f64; 3]; 2]>,
-    /// Ends and tensions of fibres, where they are shown.
-    fibres: Option<Vec<([[f64; 3]; 2], f64)>>,
-    field: Option<Sheet>,
-    time: f64,
-    /// How far obstacles have gone, µm.
-    gone: Vec<Vec3>,
-}
-
-/// What colours show.
-#[derive(Debug, Clone, PartialEq)]
-enum Shown {
-    Type,
-    Atoms(AtomQuantity),
-    Membrane(String),
-    Cells(String),
-}
-
-/// A result and all that its pictures share.
-struct Stage<'a> {
-    result: &'a ResultFile,
-    look: Look,
-    shown: Shown,
-    arrows: LoadArrows,
-    /// Whether fibres are shown: the run may have made some.
-    fibres: bool,
-    field: Option<FieldView>,
-    times: Vec<f64>,
-    /// When the run was to end, s.
-    until: f64,
-}
-
-/// Finds what `name` means for this result: the type, a quantity of atoms or a series of cells.
-fn shown_of(result: &ResultFile, name: &str) -> Result<Shown> {
-    if name == "type" {
-        return Ok(Shown::Type);
-    }
-    if result.series_names().iter().any(|known| known == name) {
-        return Ok(Shown::Cells(name.to_owned()));
-    }
-    let membranes = &result.layout().membranes;
-    if membranes.iter().any(|membrane| membrane.name == name) {
-        return Ok(Shown::Membrane(name.to_owned()));
-    }
-    match AtomQuantity::named(name) {
-        Some(quantity) if quantity.is_in(result)? => Ok(Shown::Atoms(quantity)),
-        Some(_) => {
-            let fault = Fault::new(format!("{} holds no forces on atoms", result.path().display()));
-            Err(Error::input(fault.help("run the experiment with output.forces = true, or colour by something else")))
-        }
-        None => {
-            let mut names: Vec<String> = ["type".to_owned()].into();
-            for quantity in AtomQuantity::names() {
-                if AtomQuantity::named(quantity).is_some_and(|known| known.is_in(result).unwrap_or(false)) {
-                    names.push(quantity.to_owned());
-                }
-            }
-            names.extend(membranes.iter().map(|membrane| membrane.name.clone()));
-            names.extend(result.series_names());
-            let fault = Fault::new(format!("nothing in {} is called `{name}`", result.path().display()));
-            let near = names.iter().map(|other| (strsim::damerau_levenshtein(name, other), other)).min();
-            let meant = near.filter(|(apart, _)| *apart <= 2).map(|(_, other)| format!("did you mean `{other}`? "));
-            Err(Error::input(fault.help(format!("{}there are: {}", meant.unwrap_or_default(), names.join(", ")))))
-        }
-    }
-}
+use crate::output::ResultFile;
 
 /// Makes sure that a result has what its pictures are to be coloured by.
 ///
@@ -104,120 +29,34 @@ pub fn check_field(result: &ResultFile, picture: &Picture) -> Result<()> {
     FieldView::of(result, picture).map(drop)
 }
 
-impl<'a> Stage<'a> {
-    fn new(result: &'a ResultFile, document: &Document, picture: &Picture) -> Result<Self> {
-        let shown = shown_of(result, &picture.colour_by)?;
-        let mut look = look_of(result, document, picture, &shown);
-        let field = FieldView::of(result, picture)?;
-        look.field_range = picture.field_range;
-        look.field_label = field.as_ref().map_or_else(String::new, FieldView::label);
-        let arrows = if picture.loads { LoadArrows::of(document)? } else { LoadArrows::default() };
-        let until = document.experiment.run.until.value();
-        let fibres = picture.fibres && result.layout().fibres;
-        Ok(Self { result, look, shown, arrows, fibres, field, times: result.times()?, until })
-    }
-
-    /// Nothing seen yet; times are told in the unit that suits the whole run, whichever frames are drawn.
-    fn framing(&self) -> Framing {
-        Framing::new(&self.look).lasting(self.until)
-    }
-
-    fn shot(&self, frame: usize) -> Result<Shot> {
-        let (cells, positions) = (self.result.cells(frame), self.result.positions(frame)?);
-        let values = match &self.shown {
-            Shown::Type => Vec::new(),
-            Shown::Atoms(quantity) => quantity.of_frame(self.result, frame, &positions)?,
-            Shown::Membrane(name) => {
-                self.result.membrane(name, frame)?.unwrap_or_else(|| vec![f64::NAN; positions.len()])
-            }
-            Shown::Cells(name) => self.result.cell_values(name, frame)?,
-        };
-        let time = self.times[frame];
-        let field = self.field.as_ref().map(|field| field.sheet(self.result, frame, &positions)).transpose()?;
-        let arrows = self.arrows.at(time, self.result.layout(), &cells, &positions);
-        let fibres = self.fibres.then(|| self.fibres_at(frame, &cells, &positions)).transpose()?;
-        let gone = self.result.layout().obstacles.iter().map(|obstacle| self.gone(obstacle, frame));
-        let gone = gone.collect::<Result<_>>()?;
-        Ok(Shot { cells, positions, values, arrows, fibres, field, time, gone })
-    }
-
-    /// How far an obstacle has gone, µm.
-    fn gone(&self, obstacle: &Obstacle, frame: usize) -> Result<Vec3> {
-        let direction = Vec3::from(obstacle.direction);
-        if direction == Vec3::zeros() {
-            return Ok(direction);
-        }
-        let displacement = self.result.scene_series(&format!("tool_displacement.{}", obstacle.name))?;
-        Ok(displacement.get(frame).copied().unwrap_or(0.0) * direction)
-    }
-
-    /// The ends and tensions of the fibres of a frame.
-    fn fibres_at(&self, frame: usize, cells: &[Cell], positions: &[[f64; 3]]) -> Result<Vec<([[f64; 3]; 2], f64)>> {
-        let firsts = cells.iter().zip(self.result.layout().atoms_of(cells)).map(|(cell, atoms)| (cell.id, atoms.start));
-        let firsts: HashMap<u64, usize> = firsts.collect();
-        let ends = |fibre: FibreRow| {
-            let ends = fibre.atoms.map(|atom| positions[firsts[&fibre.cell] + atom as usize]);
-            (ends, fibre.tension)
-        };
-        Ok(self.result.fibres(frame)?.into_iter().map(ends).collect())
-    }
-
-    fn snapshot<'b>(&'b self, shot: &'b Shot) -> Snapshot<'b> {
-        let values = match self.shown {
-            Shown::Type => Values::Type,
-            Shown::Atoms(_) | Shown::Membrane(_) => Values::Atoms(&shot.values),
-            Shown::Cells(_) => Values::Cells(&shot.values),
-        };
-        let layout = self.result.layout();
-        let (cells, positions, arrows, field) = (&shot.cells, &shot.positions, &shot.arrows, shot.field.as_ref());
-        let fibres = shot.fibres.as_deref();
-        Snapshot { layout, cells, positions, time: shot.time, values, arrows, fibres, field, gone: &shot.gone }
-    }
-
-    fn draw(&self, shot: &Shot, framing: &Framing, picture: &Picture) -> Image {
-        picture_of(&self.snapshot(shot), &self.look, framing, picture.width as usize, picture.height as usize)
-    }
-}
-
-fn look_of(result: &ResultFile, document: &Document, picture: &Picture, shown: &Shown) -> Look {
-    let types = result.layout().type_names();
-    let colour = |(i, name): (usize, &String)| {
-        let given = document.experiment.cells.get(name).and_then(|cell| cell.colour);
-        given.map_or_else(|| Colour::of_palette(i), |colour| Colour(colour.0))
-    };
-    let label = match shown {
-        Shown::Type => String::new(),
-        Shown::Atoms(quantity) => quantity.label().to_owned(),
-        Shown::Membrane(name) => {
-            let unit =
-                result.layout().membranes.iter().find(|membrane| membrane.name == *name).map(|m| m.unit.as_str());
-            unit.filter(|unit| !unit.is_empty()).map_or(name.clone(), |unit| format!("{name} ({unit})"))
-        }
-        Shown::Cells(name) => plots::label_of(result, name),
-    };
-    Look {
-        title: document.experiment.title.clone(),
-        type_colours: types.iter().enumerate().map(colour).collect(),
-        range: picture.colour_range,
-        least: if matches!(shown, Shown::Atoms(_)) { LEAST } else { 0.0 },
-        label,
-        direction: picture.view.from,
-        up: picture.view.up,
-        cut: picture.cut.map(|cut| cut.value()),
-        ..Look::default()
-    }
-}
-
 /// The picture of one instant.
 ///
 /// # Errors
 /// A damaged file, or a series to colour by that it does not have.
 pub fn still(result: &ResultFile, document: &Document, picture: &Picture) -> Result<Image> {
-    let stage = Stage::new(result, document, picture)?;
-    let shot = stage.shot(frame_at(result, picture.time)?)?;
-    let mut framing = stage.framing();
-    framing.include(&stage.snapshot(&shot));
-    Ok(stage.draw(&shot, &framing, picture))
+    still_as(result, document, picture, &Display::default())
+}
+
+/// The picture of one instant as a person wants it.
+///
+/// # Errors
+/// As [`still`], and a type to hide that it does not have.
+pub fn still_as(result: &ResultFile, document: &Document, picture: &Picture, display: &Display) -> Result<Image> {
+    let stage = Stage::new(result, document, picture, display)?;
+    stage.still(picture)
+}
+
+/// The picture of one instant without what is behind everything.
+///
+/// # Errors
+/// As [`still_as`].
+pub fn cut_out(result: &ResultFile, document: &Document, picture: &Picture, display: &Display) -> Result<CutOut> {
+    let mut stage = Stage::new(result, document, picture, display)?;
+    let mut over = |grey: u8| {
+        stage.look.background = Background::plain(Colour([grey; 3]));
+        stage.still(picture)
+    };
+    Ok(CutOut::between(&over(0)?, &over(255)?))
 }
 
 /// Calls `keep` with the picture of every frame that `frames` names, all with the same camera and colours.
@@ -229,9 +68,23 @@ pub fn film(
     document: &Document,
     picture: &Picture,
     frames: &[usize],
+    keep: impl FnMut(&Image) -> Result<()>,
+) -> Result<()> {
+    film_as(result, document, (picture, &Display::default()), frames, keep)
+}
+
+/// The same as a person wants it.
+///
+/// # Errors
+/// As [`film`], and a type to hide that it does not have.
+pub fn film_as(
+    result: &ResultFile,
+    document: &Document,
+    (picture, display): (&Picture, &Display),
+    frames: &[usize],
     mut keep: impl FnMut(&Image) -> Result<()>,
 ) -> Result<()> {
-    let stage = Stage::new(result, document, picture)?;
+    let stage = Stage::new(result, document, picture, display)?;
     let mut framing = stage.framing();
     for &frame in frames {
         framing.include(&stage.snapshot(&stage.shot(frame)?));

@@ -8,8 +8,8 @@ use std::collections::HashSet;
 use super::Image;
 use super::colour::{Colour, ColourMap, scale_of};
 use super::render::{
-    Bounds, Camera, Edges, FieldBar, Floor, Insets, Key, Overlay, Pane, Projection, ScaleBar, Scene, Sheet, Surface,
-    SurfaceColour, basis, draw, time_text,
+    Background, Bounds, Camera, Edges, FieldBar, Floor, Insets, Key, Overlay, Pane, Projection, ScaleBar, Scene, Sheet,
+    Surface, SurfaceColour, basis, draw, time_text,
 };
 use super::ticks::nice_above;
 use super::tools::add_tool;
@@ -92,6 +92,14 @@ pub struct Look {
     pub projection: Projection,
     /// The scale bar.
     pub scale_bar: ScaleBar,
+    /// Whether the time is written.
+    pub time: bool,
+    /// How much larger things are than where all of them just fit in.
+    pub zoom: f64,
+    /// What is behind everything.
+    pub background: Background,
+    /// Numbers of types that have no entry in the legend.
+    pub unnamed: Vec<usize>,
 }
 
 impl Default for Look {
@@ -113,6 +121,10 @@ impl Default for Look {
             up: [0.0, 0.0, 1.0],
             projection: Projection::Orthographic { height: 1.0 },
             scale_bar: ScaleBar::Auto,
+            time: true,
+            zoom: 1.0,
+            background: Background::default(),
+            unnamed: Vec::new(),
         }
     }
 }
@@ -208,7 +220,8 @@ impl Framing {
         let mut points: Vec<[f64; 3]> = self.outermost.iter().filter(|o| o.1.is_finite()).map(|o| o.2).collect();
         points.extend(&self.pane_corners);
         points.extend(&self.field_corners);
-        Camera::fit(&points, self.axes[2].into(), self.axes[1].into(), look.projection, aspect, insets)
+        let fitted = Camera::fit(&points, self.axes[2].into(), self.axes[1].into(), look.projection, aspect, insets);
+        fitted.zoomed(look.zoom)
     }
 
     /// The numbers at the ends of the colour bar.
@@ -259,11 +272,12 @@ pub fn overlay_of(snapshot: &Snapshot, look: &Look, framing: &Framing) -> Overla
         Values::Type if snapshot.layout.types.len() < 2 => Key::None,
         Values::Type => {
             let named = |(kind, known): (usize, &CellType)| (known.name.clone(), type_colour(look, kind));
-            Key::Names(snapshot.layout.types.iter().enumerate().map(named).collect())
+            let types = snapshot.layout.types.iter().enumerate().filter(|(kind, _)| !look.unnamed.contains(kind));
+            Key::Names(types.map(named).collect())
         }
         _ => Key::Bar { map: look.map, low, high, label: look.label.clone() },
     };
-    let time = time_text(snapshot.time, framing.longest);
+    let time = if look.time { time_text(snapshot.time, framing.longest) } else { String::new() };
     let bar = || FieldBar { map: look.field_map, range: framing.field_ends(look), label: look.field_label.clone() };
     let field = snapshot.field.map(|_| bar());
     Overlay { title: look.title.clone(), time, scale_bar: look.scale_bar, key, field }
@@ -281,7 +295,7 @@ pub fn scene_of(snapshot: &Snapshot, look: &Look, framing: &Framing) -> Scene {
     // Skins are as translucent in frames without fibres as in those with them.
     let shows_inside = has_links || snapshot.fibres.is_some();
     let opacity = look.opacity.unwrap_or(if shows_inside { 0.35 } else { 1.0 });
-    let mut scene = Scene::default();
+    let mut scene = Scene { background: look.background, ..Scene::default() };
     let mut sizes = Vec::with_capacity(snapshot.cells.len());
     for (number, (cell, atoms)) in snapshot.cells.iter().zip(layout.atoms_of(snapshot.cells)).enumerate() {
         let facets = layout.types[cell.kind as usize].facets.clone();
