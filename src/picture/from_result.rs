@@ -38,6 +38,8 @@ pub struct Snapshot<'a> {
     pub fibres: Option<&'a [DrawnFibre]>,
     /// A field under or between the cells; the look says its colours.
     pub field: Option<&'a Sheet>,
+    /// Positions of the atoms of a cell of each type, µm, from which its edges are known; those behind the last have those of now.
+    pub rest: &'a [Vec<[f64; 3]>],
     /// How far obstacles have gone, µm, in the order of the layout; those behind the last have not.
     pub gone: &'a [Vec3],
 }
@@ -312,6 +314,7 @@ pub fn scene_of(snapshot: &Snapshot, look: &Look, framing: &Framing) -> Scene {
         sizes.extend(Bounds::around(&own).map(|bounds| bounds.diagonal()));
         scene.surfaces.push(Surface {
             positions: own,
+            rest: snapshot.rest.get(cell.kind as usize).cloned().unwrap_or_default(),
             is_solid: look.cut.is_some() && is_closed(&facets),
             facets,
             colour,
@@ -437,6 +440,7 @@ mod tests {
             arrows: &[],
             fibres: None,
             field: None,
+            rest: &[],
             gone: &[],
         };
         let look = Look::default();
@@ -478,6 +482,7 @@ mod tests {
                 arrows: &[],
                 fibres: None,
                 field: None,
+                rest: &[],
                 gone: &[],
             };
             // A picture of one frame alone: the others have not been seen.
@@ -503,6 +508,7 @@ mod tests {
             arrows: &[],
             fibres: None,
             field: None,
+            rest: &[],
             gone: &[],
         };
         let (mut one, mut both) = (Framing::new(&look), Framing::new(&look));
@@ -535,6 +541,7 @@ mod tests {
             arrows: &[],
             fibres: None,
             field: None,
+            rest: &[],
             gone: &[],
         };
         let mut framing = Framing::new(&look);

@@ -54,6 +54,8 @@ pub struct Stage<'a> {
     until: f64,
     /// Which types of cells are shown.
     types: Vec<bool>,
+    /// The first cell of each type where there is one in the first frame, µm.
+    rest: Vec<Vec<[f64; 3]>>,
 }
 
 /// Finds what `name` means for this result: the type, a quantity of atoms or a series of cells.
@@ -104,7 +106,18 @@ impl<'a> Stage<'a> {
         let arrows = if picture.loads { LoadArrows::of(document)? } else { LoadArrows::default() };
         let until = document.experiment.run.until.value();
         let fibres = picture.fibres && result.layout().fibres;
-        Ok(Self { result, look, shown, arrows, fibres, field, times: result.times()?, until, types })
+        Ok(Self {
+            result,
+            look,
+            shown,
+            arrows,
+            fibres,
+            field,
+            times: result.times()?,
+            until,
+            types,
+            rest: first_of_types(result)?,
+        })
     }
 
     /// Nothing seen yet; times are told in the unit that suits the whole run, whichever frames are drawn.
@@ -188,7 +201,8 @@ impl<'a> Stage<'a> {
         let layout = self.result.layout();
         let (cells, positions, arrows, field) = (&shot.cells, &shot.positions, &shot.arrows, shot.field.as_ref());
         let fibres = shot.fibres.as_deref();
-        Snapshot { layout, cells, positions, time: shot.time, values, arrows, fibres, field, gone: &shot.gone }
+        let (rest, gone) = (&self.rest, &shot.gone);
+        Snapshot { layout, cells, positions, time: shot.time, values, arrows, fibres, field, rest, gone }
     }
 
     /// The picture of the instant that is asked for, alone.
@@ -232,6 +246,21 @@ fn look_of(result: &ResultFile, document: &Document, picture: &Picture, shown: &
         cut: picture.cut.map(|cut| cut.value()),
         ..Look::default()
     }
+}
+
+/// The atoms of one cell of each type in the first frame, µm; none where there is no such cell.
+fn first_of_types(result: &ResultFile) -> Result<Vec<Vec<[f64; 3]>>> {
+    let mut rest = vec![Vec::new(); result.layout().types.len()];
+    if result.frames() > 0 {
+        let (cells, positions) = (result.cells(0), result.positions(0)?);
+        for (cell, atoms) in cells.iter().zip(result.layout().atoms_of(&cells)) {
+            let known: &mut Vec<[f64; 3]> = &mut rest[cell.kind as usize];
+            if known.is_empty() {
+                known.extend_from_slice(&positions[atoms]);
+            }
+        }
+    }
+    Ok(rest)
 }
 
 /// A look with what a person wants of it.

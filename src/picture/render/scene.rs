@@ -29,6 +29,9 @@ pub struct Surface {
     /// Normal at each atom for smooth shading: the facets are drawn as they are. When empty, a smooth skin is drawn through the
     /// atoms, with edges where the facets around have one.
     pub normals: Vec<[f64; 3]>,
+    /// Positions of the atoms in which edges are sharp where facets meet, µm; the present ones when there are not as many. With those
+    /// of a mesh at rest, a soft cell has no edges that come and go.
+    pub rest: Vec<[f64; 3]>,
     /// Facets: three atoms each, all turning the same way round so that normals can be averaged.
     pub facets: Vec<[u32; 3]>,
     /// Colour.
@@ -47,6 +50,7 @@ impl Default for Surface {
         Self {
             positions: Vec::new(),
             normals: Vec::new(),
+            rest: Vec::new(),
             facets: Vec::new(),
             colour: SurfaceColour::default(),
             edges: Edges::default(),

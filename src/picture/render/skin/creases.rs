@@ -20,7 +20,7 @@ pub(super) struct Creases {
 }
 
 impl Creases {
-    /// Of a mesh with these normals of its facets, zero for those that are not drawn.
+    /// Of a mesh with these normals of its facets, now or at rest, zero for those that are not drawn.
     pub fn find(positions: &[Vec3], facets: &[[u32; 3]], topology: &Topology, normals: &[Vec3]) -> Self {
         let mut sharp = turned(topology, normals);
         let has_edges = sharp.contains(&true) && keep_lines(&mut sharp, facets, topology, positions.len());

@@ -22,8 +22,13 @@ impl Bearing {
             return Self { normals, groups: Vec::new(), creases: Creases::default() };
         }
         let facets = &surface.facets;
-        let own: Vec<Vec3> = facets.iter().map(|facet| facet_normal(surface, positions, facet)).collect();
-        let creases = Creases::find(positions, facets, topology, &own);
+        let normals_at = |positions: &[Vec3]| -> Vec<Vec3> {
+            facets.iter().map(|facet| facet_normal(surface, positions, facet)).collect()
+        };
+        let own = normals_at(positions);
+        let at_rest = (surface.rest.len() == positions.len())
+            .then(|| normals_at(&surface.rest.iter().map(|position| Vec3::from(*position)).collect::<Vec<_>>()));
+        let creases = Creases::find(positions, facets, topology, at_rest.as_ref().unwrap_or(&own));
         let groups = if creases.has_edges { groups(topology, &creases.sharp) } else { Vec::new() };
         let mut sums = vec![Vec3::zeros(); if groups.is_empty() { positions.len() } else { groups.len() }];
         for (number, facet) in facets.iter().enumerate().filter(|(number, _)| own[*number] != Vec3::zeros()) {

@@ -126,6 +126,22 @@ fn a_fold_that_ends_within_a_skin_is_no_edge() {
 }
 
 #[test]
+fn a_mesh_has_the_edges_that_it_has_at_rest() {
+    let flattened = |mut surface: Surface| {
+        surface.rest.clone_from(&surface.positions);
+        surface.positions.iter_mut().for_each(|p| p[2] = p[2].max(0.0));
+        surface
+    };
+    let has_edges = |surface: &Surface| Shape::new(surface, &topology_of(surface), &view()).bearing.creases.has_edges;
+    let drop = flattened(sphere([0.0; 3], 5.0, 2));
+    assert!(!has_edges(&drop) && has_edges(&Surface { rest: Vec::new(), ..drop }));
+    let mut block = block();
+    block.rest.clone_from(&block.positions);
+    block.positions.iter_mut().for_each(|p| p[1] *= 1.0 + 0.1 * p[0]);
+    assert!(has_edges(&block));
+}
+
+#[test]
 fn neighbours_have_no_gap_between_them() {
     let mut open = sphere([0.0; 3], 5.0, 1);
     open.facets.truncate(50);

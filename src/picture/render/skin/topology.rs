@@ -5,7 +5,7 @@ pub(super) const NONE: u32 = u32::MAX;
 
 /// The sides of a mesh's facets; side 3 f + k of facet f goes from its corner k to the next.
 #[derive(Debug, PartialEq)]
-pub(in crate::picture::render) struct Topology {
+pub(super) struct Topology {
     /// The side of another facet that is the same line, or [`NONE`] at a rim and where more than two facets meet.
     pub across: Vec<u32>,
     /// Whether there is neither.
