@@ -319,6 +319,7 @@ pub fn scene_of(snapshot: &Snapshot, look: &Look, framing: &Framing) -> Scene {
             facets,
             colour,
             edges: look.edges,
+            is_outlined: true,
             opacity,
             ..Surface::default()
         });

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::camera::Bounds;
 use super::cut::{Cut, Side};
-use super::samples::{BAND_ROWS, SAMPLES};
+use super::samples::{BAND_ROWS, BESIDE, NOTHING, SAMPLES};
 use super::scene::{Edges, Scene, Surface, SurfaceColour};
 use super::skin::{Skin, skin_of, skins};
 use super::view::View;
@@ -42,6 +42,8 @@ pub(super) struct Triangle {
     pub is_turned: bool,
     /// 1 for a skin that hides everything behind it.
     pub opacity: f32,
+    /// The number of its surface, or [`NOTHING`] for one without an outline.
+    pub body: u32,
     /// Of a solid that is cut: the side on which lines of sight go in, or out.
     pub side: Option<Side>,
 }
@@ -59,11 +61,11 @@ impl Geometry {
             cut: None,
         };
         let mut radii: Vec<f64> = Vec::with_capacity(scene.surfaces.len());
-        for (surface, skin) in scene.surfaces.iter().zip(skins(scene, view)) {
-            geometry.append(surface, skin, view);
+        for (number, (surface, skin)) in scene.surfaces.iter().zip(skins(scene, view)).enumerate() {
+            geometry.append(surface, if surface.is_outlined { number as u32 } else { NOTHING }, skin, view);
             radii.extend(Bounds::around(&surface.positions).map(|bounds| 0.5 * bounds.diagonal()));
         }
-        geometry.append(&scene.strokes, skin_of(&scene.strokes, view), view);
+        geometry.append(&scene.strokes, NOTHING, skin_of(&scene.strokes, view), view);
         if !radii.is_empty() {
             let middle = radii.len() / 2;
             geometry.typical_radius = radii.select_nth_unstable_by(middle, f64::total_cmp).1.max(1e-6);
@@ -72,7 +74,7 @@ impl Geometry {
         geometry
     }
 
-    fn append(&mut self, surface: &Surface, skin: Skin, view: &View) {
+    fn append(&mut self, surface: &Surface, body: u32, skin: Skin, view: &View) {
         let first = self.screen.len() as u32;
         let mut visible = Vec::with_capacity(skin.points.len());
         for position in &skin.points {
@@ -104,18 +106,19 @@ impl Geometry {
                 parts: piece.parts,
                 is_turned: (normals.dot(&normal) < 0.0) == faces_viewer,
                 opacity: surface.opacity.clamp(0.0, 1.0),
+                body,
                 side: surface.is_solid.then_some(side),
             });
         }
     }
 
-    /// For every band of rows the facets that touch it, in the order of the scene.
+    /// For every band of rows the facets that touch it or the samples beside it, in the order of the scene.
     pub fn bins(&self, height: usize) -> Vec<Vec<u32>> {
         let mut bins = vec![Vec::new(); height.div_ceil(BAND_ROWS)];
         let rows = (BAND_ROWS * SAMPLES) as f32;
         for (number, triangle) in self.triangles.iter().enumerate() {
             let y = triangle.corners.map(|corner| self.screen[corner as usize][1]);
-            let (low, high) = (y[0].min(y[1]).min(y[2]), y[0].max(y[1]).max(y[2]));
+            let (low, high) = (y[0].min(y[1]).min(y[2]) - BESIDE as f32, y[0].max(y[1]).max(y[2]) + BESIDE as f32);
             if high < 0.0 {
                 continue;
             }

@@ -9,6 +9,8 @@ mod camera;
 mod cut;
 mod floor;
 mod geometry;
+mod glass;
+mod outlines;
 mod overlay;
 mod raster;
 mod samples;

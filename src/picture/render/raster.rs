@@ -2,7 +2,7 @@
 
 use super::cut::Face;
 use super::geometry::Geometry;
-use super::samples::{NOTHING, SAMPLES};
+use super::samples::{BESIDE, NOTHING, SAMPLES};
 use super::spans::{SLACK, row_span, samples_between};
 
 /// What is seen through the samples of some rows.
@@ -13,6 +13,8 @@ pub(super) struct Band {
     pub height: usize,
     /// First row of samples, counted from the top of the picture.
     pub first: usize,
+    /// Rows of samples before those of its pixels.
+    pub above: usize,
     pub nearness: Vec<f32>,
     /// Facet, [`SHEET`], [`FLOOR`] or [`NOTHING`].
     pub seen: Vec<u32>,
@@ -26,11 +28,13 @@ pub(super) struct Band {
 impl Band {
     /// A band of `rows` rows of pixels that begins at row `first_row`.
     pub fn new(width: usize, rows: usize, first_row: usize, is_cut: bool) -> Self {
-        let (width, height, first) = (width * SAMPLES, rows * SAMPLES, first_row * SAMPLES);
+        let above = BESIDE.min(first_row * SAMPLES);
+        let (width, height) = (width * SAMPLES, above + rows * SAMPLES + BESIDE);
+        let first = first_row * SAMPLES - above;
         let (far, nothing) = (vec![f32::NEG_INFINITY; width * height], vec![NOTHING; width * height]);
         let faces = vec![Face::NONE; if is_cut { width * height } else { 0 }];
         let (nearness, seen) = (far.clone(), nothing.clone());
-        Self { width, height, first, nearness, seen, veil: nothing, veil_nearness: far, faces }
+        Self { width, height, first, above, nearness, seen, veil: nothing, veil_nearness: far, faces }
     }
 
     /// Shows the faces of what is cut, and forgets translucent facets that lie behind something opaque.

@@ -38,6 +38,9 @@ pub struct Surface {
     pub colour: SurfaceColour,
     /// Whether the edges of facets are drawn.
     pub edges: Edges,
+    /// Whether a thin dark line is drawn where it meets another such surface in the picture, by which cells of one colour are told
+    /// apart.
+    pub is_outlined: bool,
     /// How much the skin hides: 1 everything, less lets lines, floor and opaque surfaces behind it shine through. Of
     /// several such skins behind each other only the nearest shows.
     pub opacity: f32,
@@ -54,6 +57,7 @@ impl Default for Surface {
             facets: Vec::new(),
             colour: SurfaceColour::default(),
             edges: Edges::default(),
+            is_outlined: false,
             opacity: 1.0,
             is_solid: false,
         }
