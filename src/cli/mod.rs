@@ -1,5 +1,6 @@
 //! The command line: one file per command. Names and exit codes are a contract.
 
+pub mod chart_look;
 pub mod check;
 pub mod claims;
 mod crash;
