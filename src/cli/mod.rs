@@ -1,5 +1,6 @@
 //! The command line: one file per command. Names and exit codes are a contract.
 
+pub mod chart_look;
 pub mod check;
 pub mod claims;
 mod crash;
@@ -24,6 +25,7 @@ pub mod run;
 pub mod run_one;
 pub mod schema;
 pub mod shipped;
+pub mod show;
 pub mod sweep;
 pub mod track_file;
 pub mod verify;

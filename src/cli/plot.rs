@@ -1,5 +1,6 @@
 //! `pseudopod plot`: charts of a result file.
 
+use super::chart_look::ChartLook;
 use super::files::{Named, refuse_existing};
 use super::report::Report;
 use super::track_file::Known;
@@ -10,6 +11,7 @@ use crate::error::words::any_of;
 use crate::error::{Error, Fault, Result};
 use crate::experiment::{Axis, FieldLine, OneOrMany, Plot, PlotKind, When};
 use crate::output::ResultFile;
+use crate::picture::display::known;
 use crate::picture::from_file::beside;
 use crate::picture::plots::chart_of;
 use crate::picture::save_chart;
@@ -69,6 +71,12 @@ pub struct PlotArgs {
     /// The numbers at the ends of a kymograph's colour bar; those of the field when absent.
     #[arg(long, value_name = "LOW,HIGH", requires = "kymograph", value_parser = super::render::ends, allow_hyphen_values = true)]
     pub range: Option<[f64; 2]>,
+    /// The type of cells that is shown; what the chart says, or all, when absent.
+    #[arg(long, value_name = "TYPE")]
+    pub cells: Option<String>,
+    /// Axes and words.
+    #[command(flatten)]
+    pub look: ChartLook,
     /// Replaces files that are there.
     #[arg(long)]
     pub force: bool,
@@ -87,13 +95,19 @@ pub fn run(args: &PlotArgs) -> Result<Report> {
     }
     let result = ResultFile::open(&args.result)?;
     let document = crate::run::document_of(result.header(), &args.result)?;
-    let plots = wanted(args, &document.experiment.plot)?;
+    let mut plots = wanted(args, &document.experiment.plot)?;
+    if let Some(name) = &args.cells {
+        known(name, &result.layout().type_names())?;
+        plots.iter_mut().for_each(|plot| plot.cells = Some(name.clone()));
+    }
     for ending in plots.iter().flat_map(|plot| ["svg", "png"].map(|ending| format!("{}.{ending}", plot.name))) {
         refuse_existing(&beside(&args.result, &ending), args.force, Named::ByItself)?;
     }
     let mut made = Vec::new();
     for plot in plots {
-        made.extend(save_chart(&chart_of(&result, &document, &plot)?, &beside(&args.result, &plot.name))?);
+        let mut chart = chart_of(&result, &document, &plot)?;
+        args.look.apply(&mut chart, &plot.name)?;
+        made.extend(save_chart(&chart, &beside(&args.result, &plot.name))?);
     }
     Ok(Report::of_files(&args.result, &made))
 }
@@ -108,7 +122,11 @@ fn plot_tracks(args: &PlotArgs, read: Read) -> Result<Report> {
         return Err(Error::input(fault.help("use --tracks, --msd, --rose or --histogram")));
     }
     let file = args.result.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
-    let groups = groups_of(read.tracks, &file)?;
+    let mut groups = groups_of(read.tracks, &file)?;
+    if let Some(name) = &args.cells {
+        known(name, &groups.iter().map(|group| group.label.clone()).collect::<Vec<_>>())?;
+        groups.retain(|group| group.label == *name);
+    }
     let all = !(args.tracks || args.msd || args.rose || args.histogram.is_some());
     let mut charts = Vec::new();
     if args.tracks || all {
@@ -129,6 +147,7 @@ fn plot_tracks(args: &PlotArgs, read: Read) -> Result<Report> {
     let mut made = Vec::new();
     for (name, mut chart) in charts {
         chart.title = file.clone();
+        args.look.apply(&mut chart, &name)?;
         made.extend(save_chart(&chart, &beside(&args.result, &name))?);
     }
     Ok(Report::of_files(&args.result, &made))

@@ -3,11 +3,12 @@
 use super::files::{Named, refuse_existing, refuse_same};
 use super::frames::FrameArgs;
 use super::report::Report;
-use crate::error::{Result, say};
+use super::show::ShowArgs;
+use crate::error::{Error, Fault, Result, say};
 use crate::experiment::When;
 use crate::output::ResultFile;
 use crate::picture::Movie;
-use crate::picture::from_file::{beside, check_colour, check_field, film, still};
+use crate::picture::from_file::{beside, check_colour, check_field, cut_out, film_as, still_as};
 use crate::units::{Length, Time};
 use std::path::PathBuf;
 
@@ -50,6 +51,9 @@ pub struct RenderArgs {
     /// Leaves out the fibres that were made at run time, and cells are solid.
     #[arg(long)]
     pub no_fibres: bool,
+    /// How it is shown.
+    #[command(flatten)]
+    pub show: ShowArgs,
     /// Width in pixels.
     #[arg(long, value_parser = clap::value_parser!(u32).range(PIXELS))]
     pub width: Option<u32>,
@@ -85,6 +89,8 @@ pub fn run(args: &RenderArgs) -> Result<Report> {
     picture.fibres &= !args.no_fibres;
     picture.width = args.width.unwrap_or(picture.width);
     picture.height = args.height.unwrap_or(picture.height);
+    picture.view = args.show.view()?.unwrap_or(picture.view);
+    let display = args.show.display(&result, &picture)?;
     let frame = args.frame.of(&result, picture.time)?;
     picture.time = When::At(Time::new(result.times()?[frame]));
     let named = if args.output.is_some() { Named::ByUser } else { Named::ByItself };
@@ -92,15 +98,24 @@ pub fn run(args: &RenderArgs) -> Result<Report> {
     refuse_same(&[&args.result, &output])?;
     refuse_existing(&output, args.force, named)?;
     if output.extension().is_some_and(|ending| ending == "png") {
-        still(&result, &document, &picture)?.save_png(&output)?;
+        if args.show.transparent {
+            cut_out(&result, &document, &picture, &display)?.save_png(&output)?;
+        } else {
+            still_as(&result, &document, &picture, &display)?.save_png(&output)?;
+        }
         return Ok(Report::of_files(&args.result, &[output]).fact("frames", 1));
+    }
+    if args.show.transparent {
+        let fault =
+            Fault::new(format!("--transparent: {} shows all frames, which have a background", output.display()));
+        return Err(Error::input(fault.help("name a .png, which shows one instant, after -o")));
     }
     // What is not there is told before the movie's file is made.
     check_colour(&result, &picture.colour_by)?;
     check_field(&result, &picture)?;
     let mut movie = Movie::create(&output, args.fps)?;
     let frames: Vec<usize> = (0..result.frames()).collect();
-    film(&result, &document, &picture, &frames, |image| movie.add(image))?;
+    film_as(&result, &document, (&picture, &display), &frames, |image| movie.add(image))?;
     let written = movie.finish()?;
     written.notice.iter().for_each(|notice| say(notice));
     let mut report = Report::of_files(&args.result, &[written.path]).fact("frames", written.frames);

@@ -4,25 +4,7 @@
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Colour(pub [u8; 3]);
 
-/// The palette of Okabe and Ito (2008), which stays distinct under all common colour deficiencies, in the order in
-/// which curves and cell types take from it.
-pub const PALETTE: [Colour; 8] = [
-    Colour([0x00, 0x72, 0xb2]), // blue
-    Colour([0xd5, 0x5e, 0x00]), // vermilion
-    Colour([0x00, 0x9e, 0x73]), // bluish green
-    Colour([0xe6, 0x9f, 0x00]), // orange
-    Colour([0xcc, 0x79, 0xa7]), // reddish purple
-    Colour([0x56, 0xb4, 0xe9]), // sky blue
-    Colour([0x3c, 0x40, 0x48]), // near black
-    Colour([0xf0, 0xe4, 0x42]), // yellow
-];
-
 impl Colour {
-    /// The colour of the palette for the curve or cell type number `index`; it repeats after eight.
-    pub fn of_palette(index: usize) -> Self {
-        PALETTE[index % PALETTE.len()]
-    }
-
     /// The form `#rrggbb` that SVG reads.
     pub fn hex(self) -> String {
         let [r, g, b] = self.0;
@@ -56,6 +38,33 @@ impl Colour {
     }
 }
 
+/// Numbers that differ by less than this share of their size are one: what is below is round-off.
+const ROUND_OFF: f64 = 1e-6;
+
+/// Where a number stands between two ends, from 0 to 1; see [`ColourMap::of_value`].
+pub(crate) fn share(value: f64, [low, high]: [f64; 2]) -> f64 {
+    match (high != low, low == 0.0) {
+        _ if value.is_nan() => f64::NAN,
+        (true, _) => (value - low) / (high - low),
+        (false, true) => 0.0,
+        (false, false) => 0.5,
+    }
+}
+
+/// The ends of a scale for numbers between two: one number twice where they differ by round-off alone, or by less than `least`, and
+/// from 0 to 1 where there are none.
+pub(crate) fn scale_of([low, high]: [f64; 2], least: f64) -> [f64; 2] {
+    if !(low.is_finite() && high.is_finite()) {
+        return [0.0, 1.0];
+    }
+    let size = low.abs().max(high.abs());
+    match high - low <= (ROUND_OFF * size).max(least) {
+        true if size <= least => [0.0; 2],
+        true => [0.5 * (low + high); 2],
+        false => [low, high],
+    }
+}
+
 /// How a number becomes a colour.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ColourMap {
@@ -86,6 +95,12 @@ impl ColourMap {
         let below = (stop as usize).min(stops.len() - 2);
         let rgb = |hex: u32| Colour([(hex >> 16) as u8, (hex >> 8) as u8, hex as u8]);
         rgb(stops[below]).mixed(rgb(stops[below + 1]), stop - below as f64)
+    }
+
+    /// The colour of a number on a scale between two ends. Where these are the same, so that there is one number, it is that of the
+    /// middle of the map, or the first where the number is nothing.
+    pub fn of_value(self, value: f64, ends: [f64; 2]) -> Colour {
+        self.at(share(value, ends))
     }
 
     /// Eleven equally spaced samples of the map (viridis and magma as published with matplotlib, coolwarm after
@@ -129,8 +144,22 @@ mod tests {
     }
 
     #[test]
+    fn round_off_is_one_colour_and_the_least_difference_two() {
+        let ends = scale_of([523.598_775_598, 523.598_775_599], 0.0);
+        assert_eq!(ends[0], ends[1]);
+        for value in [523.598_775_598, 523.598_775_599] {
+            assert_eq!(ColourMap::Viridis.of_value(value, ends), ColourMap::Viridis.at(0.5));
+        }
+        assert_eq!(scale_of([523.0, 523.01], 0.0), [523.0, 523.01]);
+        assert_eq!(scale_of([-1e-17, 3e-17], 1e-9), [0.0; 2], "nothing");
+        assert_eq!(ColourMap::Viridis.of_value(2e-17, [0.0; 2]), ColourMap::Viridis.at(0.0));
+        assert_eq!(scale_of([f64::INFINITY, f64::NEG_INFINITY], 0.0), [0.0, 1.0]);
+        assert_eq!(ColourMap::Viridis.of_value(f64::NAN, ends), ColourMap::Viridis.at(f64::NAN));
+    }
+
+    #[test]
     fn hex_is_read_as_it_is_written() {
-        for colour in PALETTE {
+        for colour in [[0x00, 0x72, 0xb2], [0xf0, 0xe4, 0x42], [0, 0, 0]].map(Colour) {
             assert_eq!(Colour::from_hex(&colour.hex()), Some(colour));
         }
         assert_eq!(Colour::from_hex("#12"), None);

@@ -1,7 +1,7 @@
 //! Charts of fields: profiles along an axis at some instants, and along an axis against time.
 
 use super::chart::{Axis, Chart, Heat, Range, Series};
-use super::colour::ColourMap;
+use super::colour::{ColourMap, scale_of};
 use super::field_view::species_label;
 use super::instant::frame_at;
 use crate::error::{Result, short};
@@ -114,7 +114,7 @@ pub fn kymograph(result: &ResultFile, line: &FieldLine, range: Option<[f64; 2]>)
     }
     let finite = || rows.iter().flatten().copied().filter(|value| value.is_finite());
     let (low, high) = (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
-    let found = if low < high { [low, high] } else { [low.min(0.0), low.max(0.0) + 1.0] };
+    let found = scale_of([low, high], 0.0);
     // A run that never got further than its first frame is shown as an instant.
     let time_ends = if end > start { [start, end] } else { [start, start + 1.0] };
     let heat = Heat {

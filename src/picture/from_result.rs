@@ -6,10 +6,10 @@
 use std::collections::HashSet;
 
 use super::Image;
-use super::colour::{Colour, ColourMap};
+use super::colour::{Colour, ColourMap, scale_of};
 use super::render::{
-    Bounds, Camera, Edges, FieldBar, Floor, Insets, Key, Overlay, Pane, Projection, ScaleBar, Scene, Sheet, Surface,
-    SurfaceColour, basis, draw, time_text,
+    Background, Bounds, Camera, Edges, FieldBar, Floor, Insets, Key, Overlay, Pane, Projection, ScaleBar, Scene, Sheet,
+    Surface, SurfaceColour, basis, draw, time_text,
 };
 use super::ticks::nice_above;
 use super::tools::add_tool;
@@ -38,6 +38,8 @@ pub struct Snapshot<'a> {
     pub fibres: Option<&'a [DrawnFibre]>,
     /// A field under or between the cells; the look says its colours.
     pub field: Option<&'a Sheet>,
+    /// Positions of the atoms of a cell of each type, µm, from which its edges are known; those behind the last have those of now.
+    pub rest: &'a [Vec<[f64; 3]>],
     /// How far obstacles have gone, µm, in the order of the layout; those behind the last have not.
     pub gone: &'a [Vec3],
 }
@@ -68,6 +70,8 @@ pub struct Look {
     pub map: ColourMap,
     /// Lowest and highest number of the colour bar; `None` takes them from the frames that were included.
     pub range: Option<[f64; 2]>,
+    /// The least difference between numbers that is more than round-off, besides a millionth of their size.
+    pub least: f64,
     /// Name of the numbers with unit.
     pub label: String,
     /// Colours of a field.
@@ -90,6 +94,14 @@ pub struct Look {
     pub projection: Projection,
     /// The scale bar.
     pub scale_bar: ScaleBar,
+    /// Whether the time is written.
+    pub time: bool,
+    /// How much larger things are than where all of them just fit in.
+    pub zoom: f64,
+    /// What is behind everything.
+    pub background: Background,
+    /// Numbers of types that have no entry in the legend.
+    pub unnamed: Vec<usize>,
 }
 
 impl Default for Look {
@@ -99,6 +111,7 @@ impl Default for Look {
             type_colours: Vec::new(),
             map: ColourMap::default(),
             range: None,
+            least: 0.0,
             label: String::new(),
             field_map: ColourMap::Ink,
             field_range: None,
@@ -110,6 +123,10 @@ impl Default for Look {
             up: [0.0, 0.0, 1.0],
             projection: Projection::Orthographic { height: 1.0 },
             scale_bar: ScaleBar::Auto,
+            time: true,
+            zoom: 1.0,
+            background: Background::default(),
+            unnamed: Vec::new(),
         }
     }
 }
@@ -205,12 +222,13 @@ impl Framing {
         let mut points: Vec<[f64; 3]> = self.outermost.iter().filter(|o| o.1.is_finite()).map(|o| o.2).collect();
         points.extend(&self.pane_corners);
         points.extend(&self.field_corners);
-        Camera::fit(&points, self.axes[2].into(), self.axes[1].into(), look.projection, aspect, insets)
+        let fitted = Camera::fit(&points, self.axes[2].into(), self.axes[1].into(), look.projection, aspect, insets);
+        fitted.zoomed(look.zoom)
     }
 
     /// The numbers at the ends of the colour bar.
     fn ends(&self, look: &Look) -> [f64; 2] {
-        opened(look.range.unwrap_or(self.range))
+        look.range.unwrap_or_else(|| scale_of(self.range, look.least))
     }
 
     /// The numbers at the ends of the field's colour bar.
@@ -218,16 +236,7 @@ impl Framing {
         // A field that comes close to nothing is shown from nothing on.
         let [low, high] = self.field_range;
         let from_zero = if (0.0..0.25 * high).contains(&low) { 0.0 } else { low };
-        opened(look.field_range.unwrap_or([from_zero, high]))
-    }
-}
-
-/// Two ends apart from each other.
-fn opened([low, high]: [f64; 2]) -> [f64; 2] {
-    match (low.is_finite() && high.is_finite(), high > low) {
-        (true, true) => [low, high],
-        (true, false) => [low - 0.5 * low.abs().max(1e-3), low + 0.5 * low.abs().max(1e-3)],
-        (false, _) => [0.0, 1.0],
+        look.field_range.unwrap_or_else(|| scale_of([from_zero, high], 0.0))
     }
 }
 
@@ -265,11 +274,12 @@ pub fn overlay_of(snapshot: &Snapshot, look: &Look, framing: &Framing) -> Overla
         Values::Type if snapshot.layout.types.len() < 2 => Key::None,
         Values::Type => {
             let named = |(kind, known): (usize, &CellType)| (known.name.clone(), type_colour(look, kind));
-            Key::Names(snapshot.layout.types.iter().enumerate().map(named).collect())
+            let types = snapshot.layout.types.iter().enumerate().filter(|(kind, _)| !look.unnamed.contains(kind));
+            Key::Names(types.map(named).collect())
         }
         _ => Key::Bar { map: look.map, low, high, label: look.label.clone() },
     };
-    let time = time_text(snapshot.time, framing.longest);
+    let time = if look.time { time_text(snapshot.time, framing.longest) } else { String::new() };
     let bar = || FieldBar { map: look.field_map, range: framing.field_ends(look), label: look.field_label.clone() };
     let field = snapshot.field.map(|_| bar());
     Overlay { title: look.title.clone(), time, scale_bar: look.scale_bar, key, field }
@@ -281,13 +291,13 @@ pub fn overlay_of(snapshot: &Snapshot, look: &Look, framing: &Framing) -> Overla
 /// As [`picture_of`].
 pub fn scene_of(snapshot: &Snapshot, look: &Look, framing: &Framing) -> Scene {
     let (layout, positions) = (snapshot.layout, snapshot.positions);
-    let [low, high] = framing.ends(look);
-    let number_colour = |value: f64| look.map.at((value - low) / (high - low));
+    let ends = framing.ends(look);
+    let number_colour = |value: f64| look.map.of_value(value, ends);
     let has_links = snapshot.cells.iter().any(|cell| !layout.types[cell.kind as usize].links.is_empty());
     // Skins are as translucent in frames without fibres as in those with them.
     let shows_inside = has_links || snapshot.fibres.is_some();
     let opacity = look.opacity.unwrap_or(if shows_inside { 0.35 } else { 1.0 });
-    let mut scene = Scene::default();
+    let mut scene = Scene { background: look.background, ..Scene::default() };
     let mut sizes = Vec::with_capacity(snapshot.cells.len());
     for (number, (cell, atoms)) in snapshot.cells.iter().zip(layout.atoms_of(snapshot.cells)).enumerate() {
         let facets = layout.types[cell.kind as usize].facets.clone();
@@ -304,10 +314,12 @@ pub fn scene_of(snapshot: &Snapshot, look: &Look, framing: &Framing) -> Scene {
         sizes.extend(Bounds::around(&own).map(|bounds| bounds.diagonal()));
         scene.surfaces.push(Surface {
             positions: own,
+            rest: snapshot.rest.get(cell.kind as usize).cloned().unwrap_or_default(),
             is_solid: look.cut.is_some() && is_closed(&facets),
             facets,
             colour,
             edges: look.edges,
+            is_outlined: true,
             opacity,
             ..Surface::default()
         });
@@ -429,6 +441,7 @@ mod tests {
             arrows: &[],
             fibres: None,
             field: None,
+            rest: &[],
             gone: &[],
         };
         let look = Look::default();
@@ -445,6 +458,14 @@ mod tests {
         assert_eq!(scene.surfaces[1].colour, SurfaceColour::Uniform(ColourMap::Viridis.at(1.0)));
         let key = overlay_of(&snapshot, &look, &framing).key;
         assert!(matches!(key, Key::Bar { low, high, .. } if low == -1.0 && high == 4.0));
+        // Exact volumes differ by round-off, which is neither a range nor two colours.
+        snapshot.values = Values::Cells(&[523.598_775_598_3, 523.598_775_598_2]);
+        let mut framing = Framing::new(&look);
+        framing.include(&snapshot);
+        let scene = scene_of(&snapshot, &look, &framing);
+        assert_eq!(scene.surfaces[0].colour, scene.surfaces[1].colour);
+        let key = overlay_of(&snapshot, &look, &framing).key;
+        assert!(matches!(key, Key::Bar { low, high, .. } if low == high));
     }
 
     #[test]
@@ -462,6 +483,7 @@ mod tests {
                 arrows: &[],
                 fibres: None,
                 field: None,
+                rest: &[],
                 gone: &[],
             };
             // A picture of one frame alone: the others have not been seen.
@@ -487,6 +509,7 @@ mod tests {
             arrows: &[],
             fibres: None,
             field: None,
+            rest: &[],
             gone: &[],
         };
         let (mut one, mut both) = (Framing::new(&look), Framing::new(&look));
@@ -519,6 +542,7 @@ mod tests {
             arrows: &[],
             fibres: None,
             field: None,
+            rest: &[],
             gone: &[],
         };
         let mut framing = Framing::new(&look);

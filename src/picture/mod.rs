@@ -7,6 +7,7 @@
 pub mod arrows;
 pub mod chart;
 pub mod colour;
+pub mod display;
 pub mod field_plots;
 pub mod field_view;
 pub mod from_file;
@@ -14,10 +15,12 @@ pub mod from_result;
 pub mod image;
 mod instant;
 pub mod movie;
+pub mod palette;
 pub mod plots;
 pub mod quantities;
 pub mod render;
 pub mod shown;
+pub mod stage;
 mod svg;
 pub(crate) mod text;
 pub mod ticks;
@@ -26,6 +29,7 @@ pub mod track_plots;
 
 pub use chart::{Axis, Chart, Heat, Range, Scale, Series, Shading, save_chart, save_stacked};
 pub use colour::{Colour, ColourMap};
+pub use display::Display;
 pub use from_file::{default_files, make_defaults};
 pub use image::Image;
 pub use movie::Movie;

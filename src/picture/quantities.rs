@@ -22,6 +22,9 @@ pub enum AtomQuantity {
     Curvature,
 }
 
+/// A difference of a quantity, in its unit, that is round-off: far below the size of a molecule, and of what solvers of forces leave.
+pub const LEAST: f64 = 1e-9;
+
 /// Their names in documents and on the command line, and the labels of their colour bars.
 const NAMES: [(&str, AtomQuantity, &str); 5] = [
     ("force", AtomQuantity::Force, "force on the atoms (pN)"),

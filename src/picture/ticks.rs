@@ -147,6 +147,13 @@ pub(crate) fn short(value: f64) -> String {
     format!("{}×{}", plain(value / 10f64.powi(power), 0.01), power_of_ten(power))
 }
 
+/// What a bar says of one number: "1.00 fL, constant", with the unit that its label has in brackets at its end.
+pub(crate) fn constant(value: f64, label: &str) -> String {
+    let unit = label.strip_suffix(')').and_then(|label| label.rsplit_once(" (")).map(|(_, unit)| format!(" {unit}"));
+    let number = if (1.0..10.0).contains(&value.abs()) { plain(value, 0.01) } else { short(value) };
+    format!("{number}{}, constant", unit.unwrap_or_default())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -202,5 +209,11 @@ mod tests {
         assert_eq!(short(0.5), "0.5");
         assert_eq!(short(-2.6666), "−2.67");
         assert_eq!(short(2.5e-6), "2.50×10⁻⁶");
+    }
+    #[test]
+    fn one_number_is_told_with_its_unit() {
+        assert_eq!(constant(1.0, "volume (fL)"), "1.00 fL, constant");
+        assert_eq!(constant(523.6, "clock.U"), "524, constant");
+        assert_eq!(constant(0.0, "height (µm)"), "0 µm, constant");
     }
 }

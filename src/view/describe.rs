@@ -9,9 +9,9 @@ use crate::experiment::Document;
 use crate::output::{FieldLayout, Obstacle, ResultFile};
 use crate::picture::ColourMap;
 use crate::picture::field_view::species_label;
-use crate::picture::from_file::type_colours;
 use crate::picture::plots::label_of;
 use crate::picture::shown::{Of, Shown};
+use crate::picture::stage::type_colours;
 
 /// Parts of a scale of colours.
 const COLOURS: usize = 64;

@@ -2,8 +2,9 @@
 
 use pseudopod::experiment::{Document, Picture, When};
 use pseudopod::output::{Overwrite, ResultFile};
+use pseudopod::picture::Display;
 use pseudopod::picture::arrows::LoadArrows;
-use pseudopod::picture::from_file::{check_colour, still};
+use pseudopod::picture::from_file::{check_colour, cut_out, still, still_as};
 use pseudopod::picture::quantities::AtomQuantity;
 use pseudopod::run::{Quiet, RunOptions, run};
 use std::path::Path;
@@ -109,4 +110,63 @@ fn a_picture_has_up_what_its_document_says() {
     };
     // Two cells side by side, or one above the other.
     assert!(seen([0.0, 0.0, 1.0]) != seen([1.0, 0.0, 0.0]));
+}
+
+/// How many pixels of a picture are blue or vermilion, the colours of the first and the second type.
+fn blue_and_red(image: &pseudopod::picture::Image) -> [usize; 2] {
+    let count = |strong: usize, weak: usize| {
+        image.rgb.chunks_exact(3).filter(|p| i32::from(p[strong]) - i32::from(p[weak]) > 60).count()
+    };
+    [count(2, 0), count(0, 2)]
+}
+
+#[test]
+fn what_is_hidden_is_neither_seen_nor_named_nor_makes_space() {
+    let folder = tempfile::tempdir().unwrap();
+    let (file, document) = result(folder.path(), "");
+    let picture = Picture { width: 320, height: 180, loads: true, ..Picture::default() };
+    let seen = |hidden: &[&str], colour_by: &str| {
+        let hidden = hidden.iter().map(ToString::to_string).collect();
+        let picture = Picture { colour_by: colour_by.into(), ..picture.clone() };
+        still_as(&file, &document, &picture, &Display { hidden, ..Display::default() })
+    };
+    let [both, one] = [&[][..], &["stiff"]].map(|hidden| blue_and_red(&seen(hidden, "type").unwrap()));
+    assert!(both[0] > 1000 && both[1] > 1000, "{both:?}");
+    assert!(4 * one[0] > 5 * both[0] && one[1] == 0, "{both:?} {one:?}");
+    for colour_by in ["volume", "height"] {
+        assert!(seen(&["soft"], colour_by).is_ok());
+    }
+    let fault = seen(&["stif"], "type").unwrap_err().to_string();
+    assert!(fault.contains("stif"), "{fault}");
+}
+
+#[test]
+fn a_zoom_of_two_shows_everything_twice_as_large() {
+    let folder = tempfile::tempdir().unwrap();
+    let (file, document) = result(folder.path(), "");
+    let picture = Picture { width: 320, height: 180, ..Picture::default() };
+    let bare = Display { title: Some(String::new()), scale_bar: false, time: false, ..Display::default() };
+    let blue = |zoom: f64| {
+        let display = Display { zoom, hidden: vec!["stiff".into()], ..bare.clone() };
+        blue_and_red(&still_as(&file, &document, &picture, &display).unwrap())[0] as f64
+    };
+    let ratio = blue(0.5) / blue(0.25);
+    assert!((ratio - 4.0).abs() < 0.15, "{ratio}");
+}
+
+#[test]
+fn a_cut_out_has_nothing_behind_the_cells_and_no_words_that_are_left_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let (file, document) = result(folder.path(), "");
+    let picture = Picture { width: 320, height: 180, ..Picture::default() };
+    let bare = Display { title: Some(String::new()), scale_bar: false, time: false, ..Display::default() };
+    let cut = |display: &Display| cut_out(&file, &document, &picture, display).unwrap();
+    let opacity = |cut: &pseudopod::picture::image::CutOut, x: usize, y: usize| cut.rgba[4 * (320 * y + x) + 3];
+    let [plain, worded] = [cut(&bare), cut(&Display::default())];
+    assert_eq!(opacity(&plain, 0, 0), 0);
+    assert!(plain.rgba.iter().skip(3).step_by(4).any(|opacity| *opacity == 255));
+    let marked = |cut: &pseudopod::picture::image::CutOut| {
+        (0..320).flat_map(|x| (0..20).map(move |y| (x, y))).filter(|(x, y)| opacity(cut, *x, *y) > 64).count()
+    };
+    assert!(marked(&plain) == 0 && marked(&worded) > 8, "{} {}", marked(&plain), marked(&worded));
 }

@@ -2,8 +2,8 @@
 
 use super::children::{Ended, Running, start};
 use super::runs_told::RunsTold;
-use crate::cli::report::{Report, path_text};
 use crate::cli::how::cancelled_by_signals;
+use crate::cli::report::{Report, path_text};
 use crate::error::{Error, Result};
 use crate::simulation::CancelToken;
 use crate::study::{Collected, Files, Plan, Run, Status, collect, refused};

@@ -54,7 +54,11 @@ impl Heat {
     fn ticks(&self) -> ticks::Ticks {
         let [low, high] = self.range;
         let (low, high) = if low.is_finite() && high.is_finite() { (low, high) } else { (0.0, 1.0) };
-        ticks::linear(low.min(high), low.max(high), 7, Ends::Exact)
+        let ticks = ticks::linear(low.min(high), low.max(high), 7, Ends::Exact);
+        match low == high {
+            true => ticks::Ticks { major: vec![(low, ticks::constant(low, &self.label))], exponent: 0, ..ticks },
+            false => ticks,
+        }
     }
 
     /// The area as pixels.
@@ -73,7 +77,6 @@ impl Heat {
             let at = at.clamp(0.0, (boxes - 1) as f64);
             (at as usize, (at as usize + 1).min(boxes - 1), at.fract())
         };
-        let [low, high] = self.range;
         for row in 0..height {
             let (below, above, t) = between(height - 1 - row, height, ny);
             for column in 0..width {
@@ -83,7 +86,7 @@ impl Heat {
                     |y: usize| if s == 0.0 { at(left, y) } else { at(left, y) + s * (at(right, y) - at(left, y)) };
                 let value = if t == 0.0 { mixed(below) } else { mixed(below) + t * (mixed(above) - mixed(below)) };
                 let start = 3 * (row * width + column);
-                image.rgb[start..start + 3].copy_from_slice(&self.map.at((value - low) / (high - low)).0);
+                image.rgb[start..start + 3].copy_from_slice(&self.map.of_value(value, self.range).0);
             }
         }
         image
@@ -106,10 +109,12 @@ impl Heat {
     /// Writes the colour bar beside the frame.
     pub(super) fn write_bar(&self, svg: &mut String, frame: &Frame) {
         let (left, top, long) = (frame.right + GAP, frame.top, frame.bottom - frame.top);
+        let [low, high] = self.range;
         svg.push_str(r#"<linearGradient id="heat" x1="0" x2="0" y1="1" y2="0">"#);
         for k in 0..=20 {
             let share = f64::from(k) / 20.0;
-            let _ = write!(svg, r#"<stop offset="{share}" stop-color="{}"/>"#, self.map.at(share).hex());
+            let colour = if low == high { self.map.of_value(low, self.range) } else { self.map.at(share) };
+            let _ = write!(svg, r#"<stop offset="{share}" stop-color="{}"/>"#, colour.hex());
         }
         let _ = writeln!(
             svg,
@@ -181,5 +186,18 @@ mod tests {
         let image = heat.image(8, 8);
         assert_eq!(image.pixel(0, 0), heat.map.at(1.0));
         assert_eq!(image.pixel(7, 7), heat.map.at(0.0));
+    }
+    #[test]
+    fn a_field_that_is_the_same_everywhere_has_one_colour_and_one_number() {
+        let heat = Heat {
+            size: [2, 1],
+            values: vec![5.0; 2],
+            range: [5.0; 2],
+            label: "oxygen (µM)".into(),
+            ..Heat::default()
+        };
+        assert_eq!(heat.image(4, 1).pixel(3, 0), heat.map.at(0.5));
+        let marks: Vec<String> = heat.ticks().major.into_iter().map(|mark| mark.1).collect();
+        assert_eq!(marks, ["5.00 µM, constant"]);
     }
 }

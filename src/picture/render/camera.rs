@@ -159,6 +159,15 @@ impl Camera {
         camera
     }
 
+    /// The same camera with everything larger by a factor, about its target.
+    pub fn zoomed(mut self, factor: f64) -> Self {
+        match &mut self.projection {
+            Projection::Orthographic { height } => *height /= factor,
+            Projection::Perspective { angle } => *angle = 2.0 * ((0.5 * *angle).tan() / factor).atan(),
+        }
+        self
+    }
+
     /// Pixels that one µm takes at the target's depth in a picture of `height` pixels.
     pub fn pixels_per_micron(&self, height: usize) -> f64 {
         let distance = (Vec3::from(self.target) - Vec3::from(self.eye)).norm();

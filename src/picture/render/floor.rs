@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::raster::Geometry;
+use super::geometry::Geometry;
 use super::scene::Floor;
 use super::spans::{SLACK, row_span};
 use super::view::{PlaneOnScreen, View};

@@ -4,15 +4,20 @@
 //! scale bar and legend; [`draw`] makes an [`Image`] of the three. Rows of the picture are worked on in parallel and
 //! never share a sum, so the picture is the same to the last bit for any number of threads.
 
+mod bars;
 mod camera;
 mod cut;
 mod floor;
+mod geometry;
+mod glass;
+mod outlines;
 mod overlay;
 mod raster;
 mod samples;
 mod scene;
 mod shade;
 mod sheet;
+mod skin;
 mod spans;
 #[cfg(test)]
 pub(in crate::picture) mod tests;
@@ -23,12 +28,14 @@ use rayon::prelude::*;
 
 use super::Image;
 
+pub use bars::FieldBar;
 pub(in crate::picture) use camera::basis;
 pub use camera::{Bounds, Camera, Insets, Projection};
-pub use overlay::{FieldBar, Key, Overlay, ScaleBar, time_text};
+pub use overlay::{Key, Overlay, ScaleBar, time_text};
 pub use scene::{Background, Edges, Floor, Pane, Scene, Sheet, Surface, SurfaceColour};
 
-use raster::{Band, Geometry};
+use geometry::Geometry;
+use raster::Band;
 use samples::BAND_ROWS;
 use shade::Shader;
 use view::View;

@@ -2,12 +2,13 @@
 
 use std::fmt::Write;
 
+use super::bars::{FieldBar, write_colour_bar, write_standing_bar};
 use super::camera::{Camera, Insets};
 use crate::picture::Image;
 use crate::picture::colour::{Colour, ColourMap};
 use crate::picture::svg::svg_to_pixels;
 use crate::picture::text::{self, Anchor, Style, Weight, text_width, write_text};
-use crate::picture::ticks::{self, Ends, nice_below, short};
+use crate::picture::ticks::{self, nice_below, short};
 
 /// The lettering of a picture.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -22,17 +23,6 @@ pub struct Overlay {
     pub key: Key,
     /// Right, standing.
     pub field: Option<FieldBar>,
-}
-
-/// What the colours of a field mean.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FieldBar {
-    /// The colours.
-    pub map: ColourMap,
-    /// Values of the first and the last colour.
-    pub range: [f64; 2],
-    /// Quantity with unit.
-    pub label: String,
 }
 
 /// The line that says how long a µm is.
@@ -208,103 +198,5 @@ fn write_names(svg: &mut String, names: &[(String, Colour)], right: f64, bottom:
             write_text(svg, x + 2.0 * dot + 8.0 * unit, y, style, name);
             x += wide(name) + gap;
         }
-    }
-}
-
-/// A horizontal bar of colours with marks below and the quantity above, its right bottom corner at the margin.
-fn write_colour_bar(
-    svg: &mut String,
-    map: ColourMap,
-    [low, high]: [f64; 2],
-    label: &str,
-    right: f64,
-    bottom: f64,
-    unit: f64,
-) {
-    let (long, thick) = (270.0 * unit, 13.0 * unit);
-    let (left, top) = (right - long - 8.0 * unit, bottom - 20.0 * unit - thick);
-    write_gradient(svg, "bar", r#"x1="0" x2="1""#, map);
-    let _ = writeln!(
-        svg,
-        r##"<rect x="{left:.1}" y="{top:.1}" width="{long:.1}" height="{thick:.1}" rx="2" fill="url(#bar)"/>"##
-    );
-    let (low, high) = if low.is_finite() && high.is_finite() { (low, high) } else { (0.0, 1.0) };
-    let ticks = ticks::linear(low.min(high), low.max(high), 4, Ends::Exact);
-    for (value, text) in &ticks.major {
-        let x = left + (value - ticks.low) / (ticks.high - ticks.low) * long;
-        let _ = writeln!(
-            svg,
-            r#"<path d="M{x:.1} {:.1}v{:.1}" stroke="{}" stroke-width="{:.1}"/>"#,
-            top + thick,
-            4.0 * unit,
-            text::SOFT_INK,
-            unit.max(1.0)
-        );
-        let style = Style { size: 15.0 * unit, anchor: Anchor::Middle, weight: Weight::Soft };
-        write_text(svg, x, top + thick + 20.0 * unit, style, text);
-    }
-    let label = match ticks.exponent {
-        0 => label.to_string(),
-        power => format!("{label}  ×{}", ticks::power_of_ten(power)),
-    };
-    let style = Style { size: 17.0 * unit, anchor: Anchor::End, weight: Weight::Plain };
-    write_text(svg, left + long, top - 8.0 * unit, style, &label);
-}
-
-/// Names a run of colours for a bar; `direction` says from where to where.
-fn write_gradient(svg: &mut String, name: &str, direction: &str, map: ColourMap) {
-    let _ = write!(svg, r#"<linearGradient id="{name}" {direction}>"#);
-    for k in 0..=20 {
-        let share = f64::from(k) / 20.0;
-        let _ = write!(svg, r#"<stop offset="{share}" stop-color="{}"/>"#, map.at(share).hex());
-    }
-    svg.push_str("</linearGradient>\n");
-}
-
-/// A standing bar of colours with marks on its left and the quantity above, its right top corner at the margin, on a
-/// light ground: the field that it explains may lie behind it.
-fn write_standing_bar(svg: &mut String, bar: &FieldBar, right: f64, top: f64, unit: f64) {
-    let (long, thick, size) = (230.0 * unit, 14.0 * unit, 16.0 * unit);
-    let [low, high] = bar.range;
-    let (low, high) = if low.is_finite() && high.is_finite() { (low, high) } else { (0.0, 1.0) };
-    let ticks = ticks::linear(low.min(high), low.max(high), 6, Ends::Exact);
-    let label = match ticks.exponent {
-        0 => bar.label.clone(),
-        power => format!("{}  ×{}", bar.label, ticks::power_of_ten(power)),
-    };
-    let small = 15.0 * unit;
-    let marks = ticks.major.iter().map(|(_, text)| text_width(text, small)).fold(0.0, f64::max) + 10.0 * unit;
-    let wide = text_width(&label, size).max(marks + thick);
-    let (above, margin) = (30.0 * unit, 10.0 * unit);
-    let _ = writeln!(
-        svg,
-        r##"<rect class="ground" x="{:.1}" y="{:.1}" width="{:.1}" height="{:.1}" rx="{:.1}" fill="#ffffff" fill-opacity="0.82"/>"##,
-        right - wide - margin,
-        top - 4.0 * unit,
-        wide + 2.0 * margin,
-        above + long + 20.0 * unit,
-        6.0 * unit
-    );
-    let style = Style { size, anchor: Anchor::End, weight: Weight::Plain };
-    write_text(svg, right, top + 14.0 * unit, style, &label);
-    write_gradient(svg, "field", r#"x1="0" x2="0" y1="1" y2="0""#, bar.map);
-    let (left, top) = (right - thick, top + above);
-    let _ = writeln!(
-        svg,
-        r##"<rect x="{left:.1}" y="{top:.1}" width="{thick:.1}" height="{long:.1}" rx="2" fill="url(#field)" stroke="{}" stroke-width="{:.1}"/>"##,
-        text::SOFT_INK,
-        0.6 * unit
-    );
-    for (value, text) in &ticks.major {
-        let y = top + long - (value - ticks.low) / (ticks.high - ticks.low) * long;
-        let _ = writeln!(
-            svg,
-            r#"<path d="M{left:.1} {y:.1}h{:.1}" stroke="{}" stroke-width="{:.1}"/>"#,
-            -4.0 * unit,
-            text::SOFT_INK,
-            unit.max(1.0)
-        );
-        let style = Style { size: small, anchor: Anchor::End, weight: Weight::Soft };
-        write_text(svg, left - 7.0 * unit, y + 0.35 * small, style, text);
     }
 }

@@ -4,6 +4,8 @@
 pub(super) const SAMPLES: usize = 2;
 /// Rows of pixels that are worked on as one piece; its buffers fit a core's own cache.
 pub(super) const BAND_ROWS: usize = 8;
+/// Rows of samples above and below those of a band that it knows as well: outlines depend on neighbours.
+pub(super) const BESIDE: usize = 1;
 
 /// A sample through which nothing but the background is seen.
 pub(super) const NOTHING: u32 = u32::MAX;

@@ -26,14 +26,21 @@ pub struct Scene {
 pub struct Surface {
     /// Positions of the atoms, µm.
     pub positions: Vec<[f64; 3]>,
-    /// Normal at each atom for smooth shading; empty to take the mean of the facets around.
+    /// Normal at each atom for smooth shading: the facets are drawn as they are. When empty, a smooth skin is drawn through the
+    /// atoms, with edges where the facets around have one.
     pub normals: Vec<[f64; 3]>,
+    /// Positions of the atoms in which edges are sharp where facets meet, µm; the present ones when there are not as many. With those
+    /// of a mesh at rest, a soft cell has no edges that come and go.
+    pub rest: Vec<[f64; 3]>,
     /// Facets: three atoms each, all turning the same way round so that normals can be averaged.
     pub facets: Vec<[u32; 3]>,
     /// Colour.
     pub colour: SurfaceColour,
     /// Whether the edges of facets are drawn.
     pub edges: Edges,
+    /// Whether a thin dark line is drawn where it meets another such surface in the picture, by which cells of one colour are told
+    /// apart.
+    pub is_outlined: bool,
     /// How much the skin hides: 1 everything, less lets lines, floor and opaque surfaces behind it shine through. Of
     /// several such skins behind each other only the nearest shows.
     pub opacity: f32,
@@ -46,9 +53,11 @@ impl Default for Surface {
         Self {
             positions: Vec::new(),
             normals: Vec::new(),
+            rest: Vec::new(),
             facets: Vec::new(),
             colour: SurfaceColour::default(),
             edges: Edges::default(),
+            is_outlined: false,
             opacity: 1.0,
             is_solid: false,
         }
@@ -160,18 +169,8 @@ impl Surface {
         facet.iter().all(|atom| self.positions.get(*atom as usize).is_some_and(|p| p.iter().all(|v| v.is_finite())))
     }
 
-    /// The unit normal at every atom: as given, or the mean over the facets around weighted by their area.
-    pub(super) fn unit_normals(&self) -> Vec<nalgebra::Vector3<f32>> {
-        let unit = |sum: crate::Vec3| sum.try_normalize(1e-300).unwrap_or(crate::Vec3::z()).cast::<f32>();
-        if self.normals.len() == self.positions.len() {
-            return self.normals.iter().map(|n| unit(crate::Vec3::from(*n))).collect();
-        }
-        let mut sums = vec![crate::Vec3::zeros(); self.positions.len()];
-        for facet in self.facets.iter().filter(|facet| self.is_drawable(facet)) {
-            let [a, b, c] = facet.map(|atom| crate::Vec3::from(self.positions[atom as usize]));
-            let area = (b - a).cross(&(c - a));
-            facet.iter().for_each(|atom| sums[*atom as usize] += area);
-        }
-        sums.into_iter().map(unit).collect()
+    /// Whether its normals are given.
+    pub(super) fn has_normals(&self) -> bool {
+        !self.positions.is_empty() && self.normals.len() == self.positions.len()
     }
 }

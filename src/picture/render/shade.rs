@@ -4,11 +4,14 @@ use nalgebra::Vector3;
 
 use super::cut::Side;
 use super::floor::Ground;
-use super::raster::{Band, Geometry, Triangle};
+use super::geometry::{Geometry, Triangle};
+use super::glass::Glass;
+use super::outlines::Outlines;
+use super::raster::Band;
 use super::samples::{FLOOR, NOTHING, SAMPLES, SHEET};
-use super::scene::{Background, Edges, Pane, Scene};
+use super::scene::{Background, Scene};
 use super::sheet::Carpet;
-use super::view::{PlaneOnScreen, View};
+use super::view::View;
 use crate::Vec3;
 
 /// Colour of the floor and of its grid, sRGB from 0 to 1.
@@ -16,6 +19,8 @@ const FLOOR_COLOUR: [f32; 3] = [0.930, 0.940, 0.952];
 const GRID_COLOUR: [f32; 3] = [0.795, 0.82, 0.85];
 /// How much white there is in the colour of a cut face, as an amount of light.
 const PALE: f32 = 0.35;
+/// The least cosine between a normal that is lit and the line of sight.
+const GRAZING: f32 = 0.06;
 /// Entries of the table from linear light to sRGB: steps below a third of a grey level at the dark end.
 const GAMMA_STEPS: usize = 8192;
 
@@ -31,13 +36,6 @@ pub(super) struct Shader<'a> {
     /// Unit vector towards the sky.
     sky: Vector3<f32>,
     gamma: Vec<f32>,
-}
-
-/// A pane with what its drawing needs.
-struct Glass {
-    screen: PlaneOnScreen,
-    half: [f64; 2],
-    colour: [f32; 3],
 }
 
 impl<'a> Shader<'a> {
@@ -94,9 +92,10 @@ impl<'a> Shader<'a> {
     pub fn resolve(&self, band: &Band, geometry: &Geometry, rows: &mut [u8]) {
         const ALL: u32 = (1 << (SAMPLES * SAMPLES)) - 1;
         let width = band.width / SAMPLES;
+        let outlines = Outlines::of(band, geometry);
         for (py, row) in rows.chunks_exact_mut(3 * width).enumerate() {
             for (px, pixel) in row.chunks_exact_mut(3).enumerate() {
-                let corner = py * SAMPLES * band.width + px * SAMPLES;
+                let corner = (band.above + py * SAMPLES) * band.width + px * SAMPLES;
                 let sample = |k: usize| corner + k / SAMPLES * band.width + k % SAMPLES;
                 let mut waiting = ALL;
                 let mut sum = [0.0f32; 3];
@@ -114,14 +113,15 @@ impl<'a> Shader<'a> {
                         }
                     }
                     let (x, y) = (x / count + 0.5, y / count + 0.5);
-                    let (x, y) = ((px * SAMPLES) as f32 + x, (band.first + py * SAMPLES) as f32 + y);
+                    let (x, y) = ((px * SAMPLES) as f32 + x, (band.first + band.above + py * SAMPLES) as f32 + y);
                     let colour = self.colour(geometry, shown, x, y, near / count);
                     for k in 0..3 {
                         sum[k] += count * colour[k];
                     }
                 }
+                let light = outlines.light(corner);
                 for k in 0..3 {
-                    pixel[k] = (sum[k] * (255.0 / (SAMPLES * SAMPLES) as f32) + 0.5).clamp(0.0, 255.0) as u8;
+                    pixel[k] = (light * sum[k] * (255.0 / (SAMPLES * SAMPLES) as f32) + 0.5).clamp(0.0, 255.0) as u8;
                 }
             }
         }
@@ -193,15 +193,13 @@ impl<'a> Shader<'a> {
             // The flat face where a body is cut.
             return (self.cut_face(paint), 1.0);
         }
-        let mut normal = mix(&geometry.normals).try_normalize(1e-12).unwrap_or(viewer);
-        if normal.dot(&viewer) < 0.0 {
-            normal = -normal;
-        }
+        let normal = mix(&geometry.normals) * if triangle.is_turned { -1.0 } else { 1.0 };
+        let normal = towards(normal.try_normalize(1e-12).unwrap_or(viewer), &viewer);
         let mut colour = self.lit(paint, &normal, &viewer);
         // A thin skin seen edge on is looked through at a slant and hides more.
         let slant = 1.0 - normal.dot(&viewer).clamp(0.0, 1.0);
         let mut share = triangle.opacity + (1.0 - triangle.opacity) * slant * slant;
-        if triangle.edges == Edges::Thin {
+        if triangle.lines != 0 {
             let line = edge_strength(geometry, triangle, area, flat, SAMPLES as f32);
             colour = colour.map(|c| c * (1.0 - 0.5 * line));
             share = share.max(0.6 * line);
@@ -232,6 +230,13 @@ impl<'a> Shader<'a> {
     }
 }
 
+/// A normal of a skin whose facet is seen: one that points away from the viewer, as where few facets go round a bend, would be lit
+/// as what is not seen and show as a black sliver. It is bent until it is at a right angle to the line of sight, and a little less.
+fn towards(normal: Vector3<f32>, viewer: &Vector3<f32>) -> Vector3<f32> {
+    let facing = normal.dot(viewer);
+    if facing >= GRAZING { normal } else { (normal + (GRAZING - facing) * viewer).normalize() }
+}
+
 /// How strongly an edge of the facet's mesh shows at a point, 0 to 1.
 fn edge_strength(geometry: &Geometry, triangle: &Triangle, area: f32, flat: [f32; 3], samples: f32) -> f32 {
     let corners = triangle.corners.map(|corner| geometry.screen[corner as usize]);
@@ -239,44 +244,13 @@ fn edge_strength(geometry: &Geometry, triangle: &Triangle, area: f32, flat: [f32
     for k in 0..3 {
         let (p, q) = (corners[(k + 1) % 3], corners[(k + 2) % 3]);
         let height = area.abs() / (p[0] - q[0]).hypot(p[1] - q[1]).max(1e-9) / samples;
-        nearest = nearest.min(flat[k] * height);
+        if triangle.lines >> k & 1 == 1 {
+            nearest = nearest.min(flat[k] * height);
+        }
         smallest = smallest.min(height);
     }
-    let visibility = ((smallest - 2.0) / 6.0).clamp(0.0, 1.0);
+    let visibility = ((smallest * f32::from(triangle.parts) - 2.0) / 6.0).clamp(0.0, 1.0);
     visibility * (1.0 - nearest).clamp(0.0, 1.0)
-}
-
-impl Glass {
-    /// Prepares a pane; `None` when it has no area or is seen exactly edge on.
-    fn new(pane: &Pane, view: &View) -> Option<Self> {
-        let (half_u, half_v) = (Vec3::from(pane.half_u), Vec3::from(pane.half_v));
-        let (u, v) = (half_u.try_normalize(1e-300)?, half_v.try_normalize(1e-300)?);
-        let normal = u.cross(&v).try_normalize(1e-9)?;
-        let centre = Vec3::from(pane.centre) - view.target;
-        if !view.is_above(&centre, &normal) && !view.is_above(&centre, &-normal) {
-            return None;
-        }
-        Some(Self {
-            screen: PlaneOnScreen::new(view, &centre, &u, &v),
-            half: [half_u.norm(), half_v.norm()],
-            colour: pane.colour.0.map(|byte| f32::from(byte) / 255.0),
-        })
-    }
-
-    /// How much of the pane's colour covers what lies at nearness `near`; `None` where it does not.
-    fn strength(&self, view: &View, px: f64, py: f64, near: f32) -> Option<f32> {
-        let [grow, start] = self.screen.nearness_along_row(py);
-        let own = grow * px + start;
-        // Beyond the horizon of a perspective plane its nearness is negative.
-        if (own as f32) < near || (view.is_perspective && own <= 0.0) {
-            return None;
-        }
-        let (at, pixel) = self.screen.meet(px, py);
-        let away = |k: usize| (self.half[k] - at[k].abs()) / pixel[k].max(1e-12);
-        let inside = away(0).min(away(1)) + 0.5;
-        let rim = (1.9 - inside).clamp(0.0, 1.0) as f32;
-        (inside > 0.0).then(|| inside.min(1.0) as f32 * (0.13 + 0.52 * rim))
-    }
 }
 
 /// From an amount of light to the number that a screen turns into it.

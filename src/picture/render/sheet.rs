@@ -4,6 +4,7 @@ use super::floor::Ground;
 use super::scene::Sheet;
 use super::view::{PlaneOnScreen, View};
 use crate::Vec3;
+use crate::picture::colour::share;
 
 /// How much of the floor's shadows falls on a sheet: enough to seat the cells, not enough to falsify the colours.
 const SHADOW_SHARE: f32 = 0.55;
@@ -77,9 +78,8 @@ impl<'a> Carpet<'a> {
     /// Its colour at a pixel, sRGB from 0 to 1.
     pub fn colour(&self, ground: Option<&Ground>, px: f64, py: f64) -> [f32; 3] {
         let (at, _) = self.screen.meet(px, py);
-        let [low, high] = self.sheet.range;
         let value = self.value([at[0] / self.sides[0], at[1] / self.sides[1]]);
-        let share = (value - low) / (high - low);
+        let share = share(value, self.sheet.range);
         let paint = if share.is_nan() {
             self.sheet.map.at(f64::NAN).0.map(|byte| f32::from(byte) / 255.0)
         } else {

@@ -56,7 +56,7 @@ fn red_cell(centre: [f64; 3], splits: usize) -> Surface {
     surface
 }
 
-fn front() -> Camera {
+pub(crate) fn front() -> Camera {
     Camera {
         eye: [0.0, -50.0, 0.0],
         target: [0.0; 3],
@@ -158,6 +158,28 @@ fn solids_that_are_cut_show_flat_faces_of_their_size() {
             assert!((radius - 12f64.sqrt()).abs() < 0.06, "{radius} µm");
         }
     }
+}
+
+#[test]
+fn cells_of_one_colour_have_a_line_between_them() {
+    let cell = |x: f64, z: f64| Surface { is_outlined: true, ..sphere([x, 0.0, z], 5.0, 4) };
+    let lines = |surfaces: Vec<Surface>| {
+        let plain = Scene { surfaces, background: Background::plain(Colour([255; 3])), ..Scene::default() };
+        let mut bare_scene = plain.clone();
+        bare_scene.surfaces.iter_mut().for_each(|surface| surface.is_outlined = false);
+        let [with, without] = [plain, bare_scene].map(|scene| draw(&scene, &front(), &bare(), 400, 400));
+        (0..400 * 400)
+            .map(|n| (n % 400, n / 400))
+            .filter(|(x, y)| with.pixel(*x, *y) != without.pixel(*x, *y))
+            .collect()
+    };
+    // 20 pixels per µm: they meet in a line of 8 µm, upright or level; a pixel or two wide, without a gap between bands of rows.
+    let upright: Vec<(usize, usize)> = lines(vec![cell(-3.0, 0.0), cell(3.0, 0.0)]);
+    assert!((125..=161).all(|y| upright.iter().any(|at| at.1 == y)), "{upright:?}");
+    assert!(upright.len() < 2 * 165 && upright.iter().all(|(x, _)| x.abs_diff(200) < 3), "{}", upright.len());
+    let level: Vec<(usize, usize)> = lines(vec![cell(0.0, -3.0), cell(0.0, 3.0)]);
+    assert!((125..=275).all(|x| level.iter().any(|at| at.0 == x)) && level.len() < 2 * 165, "{}", level.len());
+    assert!(lines(vec![cell(0.0, 0.0)]).is_empty(), "one cell has no line");
 }
 
 #[test]

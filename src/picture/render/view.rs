@@ -48,6 +48,16 @@ impl View {
         Some((at.map(|v| v as f32), (self.distance / z) as f32))
     }
 
+    /// Pixels that one µm takes at a point relative to the target; none behind the camera.
+    pub fn pixels_per_micron(&self, point: &Vec3) -> f64 {
+        let depth = self.forward.dot(point) + self.distance;
+        match self.is_perspective {
+            true if depth > 1e-3 * self.distance => self.scale / depth,
+            true => 0.0,
+            false => self.scale,
+        }
+    }
+
     /// The nearness of a point, µm; `None` behind the camera.
     pub fn nearness(&self, point: [f64; 3]) -> Option<f32> {
         self.project(&(Vec3::from(point) - self.target)).map(|([_, _, near], _)| near)
