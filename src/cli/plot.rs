@@ -163,9 +163,12 @@ fn groups_of(tracks: Tracks, file: &str) -> Result<Vec<Group>> {
     });
     if let [only] = &kinds[..] {
         let label = if only.is_empty() { file.to_owned() } else { only.clone() };
-        return Ok(vec![Group { label, tracks }]);
+        return Ok(vec![Group { label, tracks, colour: None }]);
     }
-    kinds.into_iter().map(|kind| Ok(Group { tracks: tracks.clone().of_type(&kind)?, label: kind })).collect()
+    kinds
+        .into_iter()
+        .map(|kind| Ok(Group { tracks: tracks.clone().of_type(&kind)?, label: kind, colour: None }))
+        .collect()
 }
 
 fn histogram_name(quantity: Quantity) -> String {

@@ -4,6 +4,7 @@ use super::chart::{Axis, Chart, Scale, Series, Stroke};
 use super::colour::Colour;
 use super::field_plots;
 use super::field_view::{unit_text, with_unit};
+use super::stage::type_colours;
 use super::track_plots::{self, Group, SECTORS};
 use crate::analysis::over::Over;
 use crate::analysis::recording::{POSITION, Recording};
@@ -33,26 +34,28 @@ pub fn label_of(result: &ResultFile, series: &str) -> String {
 pub fn chart_of(result: &ResultFile, document: &Document, plot: &Plot) -> Result<Chart> {
     let mut chart = match &plot.kind {
         PlotKind::Series { y, each_cell } => {
-            let mut chart = curves(result, plot, "time", y.as_slice())?;
+            let mut chart = curves(result, document, plot, "time", y.as_slice())?;
             if *each_cell {
-                chart.series.splice(0..0, lines_of_cells(result, plot, y.as_slice())?);
+                chart.series.splice(0..0, lines_of_cells(result, document, plot, y.as_slice())?);
             }
             chart
         }
-        PlotKind::Curve { x, y } => curves(result, plot, x, y.as_slice())?,
-        PlotKind::Tracks => track_plots::paths(&groups(result, plot)?),
+        PlotKind::Curve { x, y } => curves(result, document, plot, x, y.as_slice())?,
+        PlotKind::Tracks => track_plots::paths(&groups(result, document, plot)?),
         PlotKind::Msd { speed, persistence } => {
             let formula = speed.zip(*persistence).map(|(v, p)| (v.value(), p.value()));
-            track_plots::displacements(&groups(result, plot)?, formula, result.header().seed)
+            track_plots::displacements(&groups(result, document, plot)?, formula, result.header().seed)
         }
         PlotKind::SpeedPersistence => {
-            let in_plane = |Group { label, tracks }| Group { label, tracks: tracks.along(Space::Plane.axes()) };
-            let groups: Vec<Group> = groups(result, plot)?.into_iter().map(in_plane).collect();
+            let in_plane = |group: Group| Group { tracks: group.tracks.along(Space::Plane.axes()), ..group };
+            let groups: Vec<Group> = groups(result, document, plot)?.into_iter().map(in_plane).collect();
             track_plots::speed_persistence(&groups, result.header().seed)?
         }
         PlotKind::Measures { x, log_x, curves } => measures(result, x, *log_x, curves)?,
-        PlotKind::Rose { sectors } => track_plots::rose(&groups(result, plot)?, sectors.unwrap_or(SECTORS))?,
-        PlotKind::Histogram { quantity, bins } => track_plots::histogram(&groups(result, plot)?, *quantity, *bins)?,
+        PlotKind::Rose { sectors } => track_plots::rose(&groups(result, document, plot)?, sectors.unwrap_or(SECTORS))?,
+        PlotKind::Histogram { quantity, bins } => {
+            track_plots::histogram(&groups(result, document, plot)?, *quantity, *bins)?
+        }
         PlotKind::Profile { line, times } => field_plots::profile(result, line, times.as_ref())?,
         PlotKind::Kymograph { line, range } => field_plots::kymograph(result, line, *range)?,
     };
@@ -66,17 +69,23 @@ pub fn chart_of(result: &ResultFile, document: &Document, plot: &Plot) -> Result
     Ok(chart)
 }
 
+/// The colour that each type of cells has in pictures, where there are several: charts have the same.
+fn colours_of_types(result: &ResultFile, document: &Document) -> impl Fn(&str) -> Option<Colour> {
+    let (names, colours) = (result.layout().type_names(), type_colours(result, document));
+    move |kind: &str| names.iter().position(|name| name == kind).filter(|_| names.len() > 1).map(|kind| colours[kind])
+}
+
 /// The types that a plot shows, each as a curve of its own.
 fn types_of(result: &ResultFile, plot: &Plot) -> Vec<String> {
     plot.cells.as_ref().map_or_else(|| result.layout().type_names(), |name| vec![name.clone()])
 }
 
-fn curves(result: &ResultFile, plot: &Plot, x: &str, series: &[String]) -> Result<Chart> {
+fn curves(result: &ResultFile, document: &Document, plot: &Plot, x: &str, series: &[String]) -> Result<Chart> {
     let names: Vec<&str> = std::iter::once(x).chain(series.iter().map(String::as_str)).collect();
     // A name that the file does not know is told beside those that it does.
     names.iter().try_for_each(|name| result.units(name).map(drop))?;
     let recording = Recording::read(result, &names)?;
-    let types = types_of(result, plot);
+    let (types, colour) = (types_of(result, plot), colours_of_types(result, document));
     let mut chart = Chart { x: Axis::linear(label_of(result, x)), ..Chart::default() };
     let units: Vec<String> = series.iter().map(|y| result.units(y)).collect::<Result<_>>()?;
     let alike = units.windows(2).all(|pair| pair[0] == pair[1]);
@@ -108,7 +117,11 @@ fn curves(result: &ResultFile, plot: &Plot, x: &str, series: &[String]) -> Resul
                 _ if shared => named,
                 _ => format!("{kind}: {named}"),
             };
-            chart.series.push(Series::line(label, points));
+            let line = Series::line(label, points);
+            chart.series.push(match colour(kind).filter(|_| series.len() == 1 && !shared) {
+                Some(colour) => line.coloured(colour),
+                None => line,
+            });
         }
     }
     if chart.series.is_empty() {
@@ -125,14 +138,16 @@ fn curves(result: &ResultFile, plot: &Plot, x: &str, series: &[String]) -> Resul
 }
 
 /// A thin line for every cell, pale in the colour that its type's mean has.
-fn lines_of_cells(result: &ResultFile, plot: &Plot, series: &[String]) -> Result<Vec<Series>> {
+fn lines_of_cells(result: &ResultFile, document: &Document, plot: &Plot, series: &[String]) -> Result<Vec<Series>> {
+    let of_type = colours_of_types(result, document);
     let recording = Recording::read(result, &series.iter().map(String::as_str).collect::<Vec<_>>())?;
     let (mut lines, mut number) = (Vec::new(), 0);
     for y in series {
         let Some(values) = recording.cells.get(y) else { continue };
         for kind in types_of(result, plot) {
             let cells = recording.cells_of(Some(&kind))?;
-            let colour = Colour::of_palette(number).mixed(Colour([0xff; 3]), 0.62);
+            let own = of_type(&kind).filter(|_| series.len() == 1);
+            let colour = own.unwrap_or_else(|| Colour::of_palette(number)).mixed(Colour([0xff; 3]), 0.62);
             let mut drawn = false;
             for cell in cells {
                 let of_cell = recording.times.iter().zip(values.column(cell)).enumerate();
@@ -151,9 +166,11 @@ fn lines_of_cells(result: &ResultFile, plot: &Plot, series: &[String]) -> Result
 }
 
 /// The tracks of each type that a plot shows.
-fn groups(result: &ResultFile, plot: &Plot) -> Result<Vec<Group>> {
+fn groups(result: &ResultFile, document: &Document, plot: &Plot) -> Result<Vec<Group>> {
     let recording = Recording::read(result, &POSITION)?;
-    let group = |label: String| Ok(Group { tracks: Tracks::of(&recording, Some(&label))?, label });
+    let colour = colours_of_types(result, document);
+    let group =
+        |label: String| Ok(Group { tracks: Tracks::of(&recording, Some(&label))?, colour: colour(&label), label });
     types_of(result, plot).into_iter().map(group).collect()
 }
 

@@ -20,18 +20,23 @@ pub struct Group {
     pub label: String,
     /// The tracks.
     pub tracks: Tracks,
+    /// Their colour, that of the type in pictures; the next of the palette when absent, and of paths one for each.
+    pub colour: Option<Colour>,
 }
 
 /// The paths of the cells seen from above.
 pub fn paths(groups: &[Group]) -> Chart {
     let mut chart =
         Chart { x: Axis::linear("x (µm)"), y: Axis::linear("y (µm)"), aspect: Aspect::Equal, ..Chart::default() };
-    for Group { tracks, .. } in groups {
+    for Group { tracks, label, colour } in groups {
         let point =
             |frame: usize, track: usize| [tracks.positions[[frame, track, 0]], tracks.positions[[frame, track, 1]]];
         // A cell that comes late or leaves has a track where it is.
         let path = |track: usize| tracks.frames_of(track).map(|frame| point(frame, track)).collect();
-        chart.series.push(Series::tracks((0..tracks.number()).map(path).collect()));
+        let tracks = (0..tracks.number()).map(path).collect();
+        // What has one colour has a name.
+        let label = colour.map_or_else(String::new, |_| label.clone());
+        chart.series.push(Series::Tracks { label, tracks, colour: *colour });
     }
     chart
 }
@@ -48,13 +53,14 @@ pub fn displacements(groups: &[Group], formula: Option<(f64, f64)>, seed: u64) -
         y: Axis { scale: Scale::Log, ..Axis::linear("mean squared displacement (µm²)") },
         ..Chart::default()
     };
-    for Group { label, tracks } in groups {
+    for (index, Group { label, tracks, colour }) in groups.iter().enumerate() {
+        let colour = colour.unwrap_or_else(|| Colour::of_palette(index));
         let of = msd::of_cells(tracks.positions.view(), &tracks.times, &lags(tracks.times.len()));
         let found = of.displacements();
         let points: Vec<[f64; 2]> = found.iter().map(|one| [one.lag, one.msd]).collect();
         let band = points.iter().zip(of.intervals(seed)).map(|([lag, _], [low, high])| [*lag, low, high]).collect();
-        chart.series.push(Series::band(label.clone(), band));
-        chart.series.push(Series::line(label.clone(), points));
+        chart.series.push(Series::band(label.clone(), band).coloured(colour));
+        chart.series.push(Series::line(label.clone(), points).coloured(colour));
         if let Some((speed, persistence)) = formula {
             let points = found.iter().map(|one| [one.lag, furth(one.lag, speed, persistence)]).collect();
             chart.series.push(Series::dashed("Fürth's formula", points).coloured(Colour([0x33; 3])));
@@ -84,12 +90,12 @@ pub fn speed_persistence(groups: &[Group], seed: u64) -> Result<Chart> {
         let label = format!("line of ln p: r = {}", digits(relation.correlation));
         chart.series.push(Series::dashed(label, points.to_vec()).coloured(Colour([0x33; 3])));
     }
-    for (Group { label, .. }, point) in groups.iter().zip(&found) {
+    for (Group { label, colour, .. }, point) in groups.iter().zip(&found) {
         chart.series.push(Series::Points {
             label: label.clone(),
             points: vec![[per_minute(point.speed), point.persistence.value]],
             bars: vec![[point.persistence.low, point.persistence.high]],
-            colour: None,
+            colour: *colour,
             marker: Marker::default(),
         });
     }
@@ -143,7 +149,7 @@ pub fn rose(groups: &[Group], sectors: u32) -> Result<Chart> {
     let mut chart = Chart { x: around, y, aspect: Aspect::Equal, ground, legend: Legend::Beside, ..Chart::default() };
     for (index, (group, directions, counts)) in counted.iter().enumerate() {
         let wedge = |(sector, count): (usize, &u32)| wedge((sector as f64 - 0.5) * width, width, f64::from(*count));
-        let colour = Colour::of_palette(index);
+        let colour = group.colour.unwrap_or_else(|| Colour::of_palette(index));
         let outlines = counts.iter().enumerate().filter(|(_, count)| **count > 0).map(wedge).collect();
         chart.series.push(Series::Areas { label: group.label.clone(), outlines, colour: Some(colour) });
         let all = circular::describe(directions.iter().copied());
@@ -233,7 +239,7 @@ pub fn histogram(groups: &[Group], quantity: Quantity, bins: Option<u32>) -> Res
             let (left, right, top) = (low + bin as f64 * width, low + (bin + 1) as f64 * width, f64::from(*count));
             vec![[left, 0.0], [left, top], [right, top], [right, 0.0]]
         };
-        let colour = Colour::of_palette(index);
+        let colour = group.colour.unwrap_or_else(|| Colour::of_palette(index));
         let outlines = counts.iter().enumerate().filter(|(_, count)| **count > 0).map(column).collect();
         let label = if groups.len() > 1 { group.label.clone() } else { String::new() };
         chart.series.push(Series::Areas { label: label.clone(), outlines, colour: Some(colour) });

@@ -43,6 +43,15 @@ kind = "curve"
 x = "clock.U"
 y = "clock.V"
 cells = "walker"
+[[plot]]
+name = "paths"
+kind = "tracks"
+[[plot]]
+name = "resters"
+kind = "series"
+y = "volume"
+cells = "rester"
+each_cell = true
 "#;
 
 fn charts(folder: &Path) -> Vec<(Plot, Chart)> {
@@ -170,4 +179,26 @@ fn gallery_of_charts() {
     for (plot, chart) in charts(folder.path()) {
         save_chart(&chart, &out.join(format!("chart_{}", plot.name))).unwrap();
     }
+}
+
+#[test]
+fn types_have_the_colours_of_the_pictures() {
+    use pseudopod::picture::Colour;
+    let folder = tempfile::tempdir().unwrap();
+    let charts = charts(folder.path());
+    let colours = |name: &str| -> Vec<Option<Colour>> {
+        let colour = |series: &Series| match series {
+            Series::Line { colour, .. } | Series::Tracks { colour, .. } => *colour,
+            other => panic!("{other:?}"),
+        };
+        named(&charts, name).series.iter().map(colour).collect()
+    };
+    let of_type = [0, 1].map(Colour::of_palette);
+    assert_eq!(colours("paths"), of_type.map(Some));
+    let labels: Vec<&str> = named(&charts, "paths").series.iter().map(Series::label).collect();
+    assert_eq!(labels, ["walker", "rester"], "one colour for many tracks is told by a name");
+    // The second type alone is not in the colour of the first.
+    let resters = colours("resters");
+    assert_eq!(resters.last(), Some(&Some(of_type[1])));
+    assert_eq!(resters[0], Some(of_type[1].mixed(Colour([0xff; 3]), 0.62)));
 }
