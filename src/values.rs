@@ -209,7 +209,47 @@ impl JsonSchema for LengthUnit {
     }
 }
 
-/// A colour, red, green and blue from 0 to 255, written "#c0392b".
+/// Colours that have a name, as browsers and plotting libraries know them (CSS Color Module 4).
+const NAMES: [(&str, u32); 36] = [
+    ("black", 0x000000),
+    ("blue", 0x0000ff),
+    ("brown", 0xa52a2a),
+    ("chocolate", 0xd2691e),
+    ("coral", 0xff7f50),
+    ("crimson", 0xdc143c),
+    ("cyan", 0x00ffff),
+    ("darkblue", 0x00008b),
+    ("darkgreen", 0x006400),
+    ("darkorange", 0xff8c00),
+    ("darkred", 0x8b0000),
+    ("gold", 0xffd700),
+    ("gray", 0x808080),
+    ("green", 0x008000),
+    ("grey", 0x808080),
+    ("indigo", 0x4b0082),
+    ("lightblue", 0xadd8e6),
+    ("lightgreen", 0x90ee90),
+    ("lightgrey", 0xd3d3d3),
+    ("lime", 0x00ff00),
+    ("magenta", 0xff00ff),
+    ("maroon", 0x800000),
+    ("navy", 0x000080),
+    ("olive", 0x808000),
+    ("orange", 0xffa500),
+    ("orchid", 0xda70d6),
+    ("pink", 0xffc0cb),
+    ("purple", 0x800080),
+    ("red", 0xff0000),
+    ("salmon", 0xfa8072),
+    ("steelblue", 0x4682b4),
+    ("teal", 0x008080),
+    ("tomato", 0xff6347),
+    ("turquoise", 0x40e0d0),
+    ("violet", 0xee82ee),
+    ("yellow", 0xffff00),
+];
+
+/// A colour, red, green and blue from 0 to 255, written "#c0392b", or as a name such as "steelblue".
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub struct Colour(pub [u8; 3]);
@@ -217,11 +257,23 @@ pub struct Colour(pub [u8; 3]);
 impl FromStr for Colour {
     type Err = UnitError;
     fn from_str(text: &str) -> Result<Self, UnitError> {
-        let fault = || UnitError {
-            message: format!("\"{text}\" is not a colour"),
-            help: "write # and six hexadecimal digits for red, green and blue, such as \"#c0392b\"".into(),
-            at: 0..text.len(),
+        let fault = || {
+            let near = NAMES.iter().map(|(name, _)| (strsim::damerau_levenshtein(name, text), name)).min();
+            let meant = near.filter(|(apart, _)| *apart <= 2).map(|(_, name)| format!("did you mean \"{name}\"? "));
+            UnitError {
+                message: format!("\"{text}\" is not a colour"),
+                help: format!(
+                    "{}write # and six hexadecimal digits for red, green and blue, such as \"#c0392b\", or a name: {}",
+                    meant.unwrap_or_default(),
+                    NAMES.map(|(name, _)| name).join(", ")
+                ),
+                at: 0..text.len(),
+            }
         };
+        if let Some((_, number)) = NAMES.iter().find(|(name, _)| *name == text) {
+            let [_, red, green, blue] = number.to_be_bytes();
+            return Ok(Self([red, green, blue]));
+        }
         let digits = text.strip_prefix('#').filter(|digits| digits.len() == 6).ok_or_else(fault)?;
         if !digits.chars().all(|c| c.is_ascii_hexdigit()) {
             return Err(fault());
@@ -253,7 +305,8 @@ impl JsonSchema for Colour {
         true
     }
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
-        json_schema!({ "type": "string", "x-text": "colour", "pattern": "^#[0-9a-fA-F]{6}$", "examples": ["#c0392b"] })
+        let pattern = format!("^(#[0-9a-fA-F]{{6}}|{})$", NAMES.map(|(name, _)| name).join("|"));
+        json_schema!({ "type": "string", "x-text": "colour", "pattern": pattern, "examples": ["#c0392b", "steelblue"] })
     }
 }
 
@@ -265,6 +318,10 @@ mod tests {
     fn a_colour_survives_its_own_text() {
         assert_eq!("#c0392B".parse(), Ok(Colour([0xc0, 0x39, 0x2b])));
         assert_eq!(String::from(Colour([0xc0, 0x39, 0x2b])), "#c0392b");
+        assert_eq!("steelblue".parse(), Ok(Colour([0x46, 0x82, 0xb4])));
+        assert!(
+            "stealblue".parse::<Colour>().is_err_and(|fault| fault.help.starts_with("did you mean \"steelblue\"?"))
+        );
         assert!("#c0392".parse::<Colour>().is_err() && "#+12345".parse::<Colour>().is_err());
     }
 

@@ -4,7 +4,7 @@ use super::files::{Named, refuse_existing, refuse_same};
 use super::frames::FrameArgs;
 use super::report::Report;
 use super::show::ShowArgs;
-use crate::error::{Error, Fault, Result, say};
+use crate::error::{Error, Fault, Result};
 use crate::experiment::When;
 use crate::output::ResultFile;
 use crate::picture::Movie;
@@ -117,7 +117,6 @@ pub fn run(args: &RenderArgs) -> Result<Report> {
     let frames: Vec<usize> = (0..result.frames()).collect();
     film_as(&result, &document, (&picture, &display), &frames, |image| movie.add(image))?;
     let written = movie.finish()?;
-    written.notice.iter().for_each(|notice| say(notice));
     let mut report = Report::of_files(&args.result, &[written.path]).fact("frames", written.frames);
     report.words = format!("{}: {} frames\n", report.words.trim_end(), written.frames);
     Ok(report)

@@ -1,4 +1,4 @@
-//! Strings pictures together: animated GIF, MP4 or WebM where ffmpeg is installed, numbered PNG files otherwise.
+//! Strings pictures together: animated GIF, MP4 or WebM by ffmpeg, or numbered PNG files.
 
 use std::fs::File;
 use std::io::{BufWriter, Read, Write};
@@ -29,8 +29,6 @@ pub struct Written {
     pub path: PathBuf,
     /// Number of frames.
     pub frames: usize,
-    /// What the user should know, when the movie is not what was asked for.
-    pub notice: Option<String>,
 }
 
 enum Kind {
@@ -44,17 +42,15 @@ enum Kind {
     Sequence {
         folder: PathBuf,
         waiting: Option<Image>,
-        notice: Option<String>,
     },
 }
 
 impl Movie {
     /// Begins a movie with `fps` pictures a second at a path whose ending says the kind: `.gif`; `.mp4` or `.webm`,
-    /// which need the program ffmpeg on the PATH and become numbered PNG files in a folder of the same name without
-    /// it; `.png`, one file for one picture and a folder of numbered files for more.
+    /// which need the program ffmpeg on the PATH; `.png`, one file for one picture and a folder of numbered files for more.
     ///
     /// # Errors
-    /// When the ending or `fps` is none of these, or the file cannot be written.
+    /// [`Error::Machine`] without ffmpeg where it is needed. When the ending or `fps` is none of these, or the file cannot be written.
     pub fn create(path: &Path, fps: f64) -> Result<Self> {
         Self::create_with(path, fps, on_path("ffmpeg"))
     }
@@ -81,14 +77,14 @@ impl Movie {
                 Kind::Ffmpeg { program, child: None }
             }
             ("mp4" | "webm", None) => {
-                let notice = format!(
-                    "ffmpeg is not installed, so the movie was written as numbered pictures in {}; install ffmpeg, or \
-                     ask for a .gif",
-                    folder.display()
-                );
-                Kind::Sequence { folder, waiting: None, notice: Some(notice) }
+                return Err(Error::Machine {
+                    message: format!("{} cannot be made: the program ffmpeg is not there", path.display()),
+                    help: "install ffmpeg (with apt, dnf or Homebrew), or let the name end in .gif, or in .png for a folder of numbered \
+                           pictures"
+                        .into(),
+                });
             }
-            ("png", _) => Kind::Sequence { folder, waiting: None, notice: None },
+            ("png", _) => Kind::Sequence { folder, waiting: None },
             _ => {
                 let fault = Fault::new(format!("cannot tell from its name what kind of picture {} is", path.display()));
                 return Err(Error::input(fault.help("let the name end in .png, .gif, .mp4 or .webm")));
@@ -126,8 +122,8 @@ impl Movie {
                 let written = input.map_or(Ok(()), |input| input.write_all(&image.rgb));
                 written.or_else(|_| finish_ffmpeg(child.take(), &self.path))
             }
-            Kind::Sequence { folder, waiting, notice } => {
-                if self.frames == 1 && notice.is_none() {
+            Kind::Sequence { folder, waiting } => {
+                if self.frames == 1 {
                     *waiting = Some(image.clone());
                     return Ok(());
                 }
@@ -150,9 +146,9 @@ impl Movie {
             Kind::Gif(gif) => gif.finish().map_err(|error| unwritable(&path, &error))?,
             Kind::Ffmpeg { child, .. } => finish_ffmpeg(child, &path)?,
             Kind::Sequence { waiting: Some(only), .. } => only.save_png(&path)?,
-            Kind::Sequence { folder, notice, .. } => return Ok(Written { path: folder, frames, notice }),
+            Kind::Sequence { folder, .. } => return Ok(Written { path: folder, frames }),
         }
-        Ok(Written { path, frames, notice: None })
+        Ok(Written { path, frames })
     }
 }
 
@@ -242,7 +238,7 @@ pub(super) mod tests {
         let path = folder.path().join("square.gif");
         let mut movie = Movie::create(&path, 12.0).unwrap();
         (0..6).for_each(|frame| movie.add(&moving_square(frame)).unwrap());
-        assert_eq!(movie.finish().unwrap(), Written { path: path.clone(), frames: 6, notice: None });
+        assert_eq!(movie.finish().unwrap(), Written { path: path.clone(), frames: 6 });
         let (shown, hundredths) = played(&path);
         for (frame, screen) in shown.iter().enumerate() {
             let meant = moving_square(frame);
@@ -268,13 +264,12 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn without_ffmpeg_a_movie_becomes_pictures_and_says_so() {
+    fn without_ffmpeg_a_film_is_an_error_that_helps_and_leaves_nothing() {
         let folder = tempfile::tempdir().unwrap();
-        let mut movie = Movie::create_with(&folder.path().join("cells.mp4"), 10.0, None).unwrap();
-        movie.add(&moving_square(0)).unwrap();
-        let written = movie.finish().unwrap();
-        assert!(written.path.join("00001.png").is_file());
-        assert!(written.notice.unwrap().contains("ffmpeg is not installed"));
+        let error = Movie::create_with(&folder.path().join("cells.mp4"), 10.0, None).err().expect("no film");
+        assert_eq!(error.exit_code(), 1);
+        assert!(error.to_string().contains("ffmpeg is not there"), "{error}");
+        assert_eq!(folder.path().read_dir().unwrap().count(), 0);
     }
 
     #[test]
