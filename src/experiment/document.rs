@@ -115,6 +115,14 @@ impl Document {
         Some(node.key_location(label))
     }
 
+    /// The unit in which the document says when its run ends: `min` of `until = "8 min"`; none where it is not a number and a unit.
+    pub fn clock_unit(&self) -> Option<&str> {
+        let (node, is_written) = self.tree.follow("run.until");
+        let text = node.written().trim_matches(['"', '\'', ' ']);
+        let unit = text.trim_start_matches(|c: char| c.is_ascii_digit() || "+-.eE ".contains(c));
+        (is_written && !unit.is_empty()).then_some(unit)
+    }
+
     /// Whether a key is written in the document or set, rather than left at its default.
     pub fn says(&self, path: &str) -> bool {
         self.tree.follow(path).1

@@ -8,8 +8,8 @@ use std::collections::HashSet;
 use super::Image;
 use super::colour::{Colour, ColourMap, scale_of};
 use super::render::{
-    Background, Bounds, Camera, Edges, FieldBar, Floor, Insets, Key, Overlay, Pane, Projection, ScaleBar, Scene, Sheet,
-    Surface, SurfaceColour, basis, draw, time_text,
+    Background, Bounds, Camera, ClockUnit, Edges, FieldBar, Floor, Insets, Key, Overlay, Pane, Projection, ScaleBar,
+    Scene, Sheet, Surface, SurfaceColour, basis, draw, time_text,
 };
 use super::ticks::nice_above;
 use super::tools::add_tool;
@@ -80,6 +80,8 @@ pub struct Look {
     pub field_range: Option<[f64; 2]>,
     /// Name of the field with unit.
     pub field_label: String,
+    /// The unit of times; that which suits the run when absent.
+    pub clock: Option<ClockUnit>,
     /// Whether the edges of facets are drawn.
     pub edges: Edges,
     /// How much skins hide, 0 to 1; `None` lets them be translucent where there are links inside.
@@ -116,6 +118,7 @@ impl Default for Look {
             field_map: ColourMap::Ink,
             field_range: None,
             field_label: String::new(),
+            clock: None,
             edges: Edges::Hidden,
             opacity: None,
             cut: None,
@@ -279,7 +282,7 @@ pub fn overlay_of(snapshot: &Snapshot, look: &Look, framing: &Framing) -> Overla
         }
         _ => Key::Bar { map: look.map, low, high, label: look.label.clone() },
     };
-    let time = if look.time { time_text(snapshot.time, framing.longest) } else { String::new() };
+    let time = if look.time { time_text(snapshot.time, framing.longest, look.clock) } else { String::new() };
     let bar = || FieldBar { map: look.field_map, range: framing.field_ends(look), label: look.field_label.clone() };
     let field = snapshot.field.map(|_| bar());
     Overlay { title: look.title.clone(), time, scale_bar: look.scale_bar, key, field }

@@ -10,7 +10,7 @@ use super::field_view::FieldView;
 use super::from_result::{Framing, Look, Snapshot, Values, picture_of};
 use super::instant::frame_at;
 use super::quantities::LEAST;
-use super::render::{Edges, ScaleBar, Sheet};
+use super::render::{ClockUnit, Edges, ScaleBar, Sheet};
 use super::shown::{Of, Shown};
 use crate::Vec3;
 use crate::error::Result;
@@ -169,6 +169,11 @@ impl<'a> Stage<'a> {
     }
 }
 
+/// The unit of times that the document of a run uses.
+pub fn clock_of(document: &Document) -> Option<ClockUnit> {
+    document.clock_unit().and_then(|unit| ClockUnit::named(unit, document.experiment.run.until.value()))
+}
+
 /// The colours of the types of cells of a result: those of its document, else of the palette.
 pub fn type_colours(result: &ResultFile, document: &Document) -> Vec<Colour> {
     let given = |name: &String| document.experiment.cells.get(name).and_then(|cell| cell.colour);
@@ -181,6 +186,7 @@ fn look_of(result: &ResultFile, document: &Document, picture: &Picture, shown: &
     Look {
         title: document.experiment.title.clone(),
         type_colours: type_colours(result, document),
+        clock: clock_of(document),
         range: picture.colour_range,
         least: if matches!(shown, Shown::Atoms(_)) { LEAST } else { 0.0 },
         label: shown.label(result),

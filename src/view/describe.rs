@@ -10,8 +10,9 @@ use crate::output::{FieldLayout, Obstacle, ResultFile};
 use crate::picture::ColourMap;
 use crate::picture::field_view::species_label;
 use crate::picture::plots::label_of;
+use crate::picture::render::ClockUnit;
 use crate::picture::shown::{Of, Shown};
-use crate::picture::stage::type_colours;
+use crate::picture::stage::{clock_of, type_colours};
 
 /// Parts of a scale of colours.
 const COLOURS: usize = 64;
@@ -49,6 +50,7 @@ pub fn scene(result: &ResultFile, document: &Document) -> Result<Value> {
         "commit": header.commit,
         "started": header.started,
         "until": document.experiment.run.until.value(),
+        "clock": clock_of(document).map(|ClockUnit(size, name)| json!([size, name])),
         "box": { "low": first.low, "sides": first.sides },
         "types": types.collect::<Vec<_>>(),
         "obstacles": layout.obstacles.iter().map(obstacle).collect::<Vec<_>>(),

@@ -81,8 +81,8 @@ export class Transport {
     slider.max = String(Math.max(0, frames - 1));
     slider.value = String(state.frame);
     const where = viewer.live ? 'now' : `frame ${state.frame + 1} of ${frames}`;
-    slider.setAttribute('aria-valuetext', `${where}, ${timeText(viewer.time, viewer.scene.until)}`);
-    byId('clock').textContent = `${timeText(viewer.time, viewer.scene.until)} · ${where}`;
+    slider.setAttribute('aria-valuetext', `${where}, ${timeText(viewer.time, viewer.scene.until, viewer.scene.clock)}`);
+    byId('clock').textContent = `${timeText(viewer.time, viewer.scene.until, viewer.scene.clock)} · ${where}`;
     const play = byId('play');
     byId('sign').setAttribute('d', this.isPlaying ? 'M3 2h4v12H3zM9 2h4v12H9z' : 'M3 1.5v13L14 8z');
     play.setAttribute('aria-label', this.isPlaying ? 'Pause' : 'Play');
@@ -129,7 +129,7 @@ export class Transport {
     if (run.phase === 'preparing') return run.words || 'The run is being prepared.';
     if (run.phase === 'ended') return `The run has ended after ${run.steps} steps.`;
     const share = run.until > 0 ? Math.round((100 * run.time) / run.until) : 0;
-    return `${run.phase === 'paused' ? 'The run waits' : 'Running'}: ${timeText(run.time, run.until)}, ${share} %`;
+    return `${run.phase === 'paused' ? 'The run waits' : 'Running'}: ${timeText(run.time, run.until, this.viewer.scene.clock)}, ${share} %`;
   }
 
   /** Shows the run as it goes on, for as long as it is followed. */

@@ -288,7 +288,7 @@ export class Viewer {
     drawMarks(this.marks.getContext('2d'), this.marks.width, this.marks.height, scale, {
       dark: this.state.theme === 'dark',
       title: this.state.title ? this.scene.title : '',
-      time: timeText(this.time, this.scene.until),
+      time: timeText(this.time, this.scene.until, this.scene.clock),
       bar: true,
       perMicron: this.canvas.clientHeight / (this.eye.seen() * Math.max(1, 1 / this.eye.aspect)),
       names: this.scene.types.map(({ name, colour }, kind) => ({ name, colour, count: this.cells.counts?.[kind] ?? 0 })),

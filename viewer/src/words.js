@@ -8,10 +8,10 @@ export function unitOf(longest) {
   return [size, name];
 }
 
-/** A time in the unit that suits the whole run, as pictures have it. */
-export function timeText(time, longest) {
+/** A time in the unit of the document, or that suits the whole run, as pictures have it. */
+export function timeText(time, longest, unit) {
   const most = Math.max(Math.abs(longest), Math.abs(time));
-  const [size, name] = unitOf(most);
+  const [size, name] = unit ?? unitOf(most);
   const digits = most === 0 ? 1 : Math.min(2, Math.max(0, 2 - Math.floor(Math.log10((most / size) * 1.000001))));
   return `t = ${(time / size).toFixed(digits).replace('-', '−')} ${name}`;
 }

@@ -31,7 +31,7 @@ use super::Image;
 pub use bars::FieldBar;
 pub(in crate::picture) use camera::basis;
 pub use camera::{Bounds, Camera, Insets, Projection};
-pub use overlay::{Key, Overlay, ScaleBar, time_text};
+pub use overlay::{ClockUnit, Key, Overlay, ScaleBar, time_text};
 pub use scene::{Background, Edges, Floor, Pane, Scene, Sheet, Surface, SurfaceColour};
 
 use geometry::Geometry;

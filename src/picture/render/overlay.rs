@@ -58,17 +58,44 @@ pub enum Key {
     },
 }
 
+/// The units of times in pictures: their names in documents, what they are in s, and how they are written.
+const UNITS: [(&str, f64, &str); 6] = [
+    ("us", 1e-6, "µs"),
+    ("ms", 1e-3, "ms"),
+    ("s", 1.0, "s"),
+    ("min", 60.0, "min"),
+    ("h", 3600.0, "h"),
+    ("d", 86_400.0, "d"),
+];
+
+/// A unit of times: what it is in s, and its name.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ClockUnit(pub f64, pub &'static str);
+
+impl ClockUnit {
+    /// The unit that a document calls so, where a clock that goes up to `longest` (s) shows more than nothing in it.
+    pub fn named(name: &str, longest: f64) -> Option<Self> {
+        let found = UNITS.iter().find(|(known, ..)| *known == name)?;
+        (longest >= 0.1 * found.1).then_some(Self(found.1, found.2))
+    }
+
+    /// The unit that suits times up to `longest`, s.
+    pub fn fitting(longest: f64) -> Self {
+        match longest {
+            _ if longest < 1e-3 => Self(1e-6, "µs"),
+            _ if longest < 1.0 => Self(1e-3, "ms"),
+            _ if longest < 600.0 => Self(1.0, "s"),
+            _ if longest < 36_000.0 => Self(60.0, "min"),
+            _ => Self(3600.0, "h"),
+        }
+    }
+}
+
 /// A time for a picture or a frame of a movie that lasts until `longest` (both s), in a unit that stays the same for
-/// the whole movie: "t = 12.0 s", "t = 3.5 min", "t = 2.00 h".
-pub fn time_text(time: f64, longest: f64) -> String {
+/// the whole movie, that which suits it when absent: "t = 12.0 s", "t = 3.5 min", "t = 2.00 h".
+pub fn time_text(time: f64, longest: f64, unit: Option<ClockUnit>) -> String {
     let longest = longest.abs().max(time.abs());
-    let (unit, name) = match longest {
-        _ if longest < 1e-3 => (1e-6, "µs"),
-        _ if longest < 1.0 => (1e-3, "ms"),
-        _ if longest < 600.0 => (1.0, "s"),
-        _ if longest < 36_000.0 => (60.0, "min"),
-        _ => (3600.0, "h"),
-    };
+    let ClockUnit(unit, name) = unit.unwrap_or_else(|| ClockUnit::fitting(longest));
     let digits = (2.0 - (longest / unit * 1.000_001).log10().floor()).clamp(0.0, 2.0);
     let digits = if longest == 0.0 { 1.0 } else { digits };
     format!("t = {} {name}", ticks::plain(time / unit, 10f64.powf(-digits)))

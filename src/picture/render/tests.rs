@@ -255,10 +255,14 @@ fn broken_input_is_left_out() {
 
 #[test]
 fn times_are_written_in_one_unit_for_the_whole_movie() {
-    assert_eq!(time_text(0.0, 12.0), "t = 0.0 s");
-    assert_eq!(time_text(12.0, 12.0), "t = 12.0 s");
-    assert_eq!(time_text(90.0, 1200.0), "t = 1.5 min");
-    assert_eq!(time_text(0.0, 0.0), "t = 0.0 µs");
+    assert_eq!(time_text(0.0, 12.0, None), "t = 0.0 s");
+    assert_eq!(time_text(12.0, 12.0, None), "t = 12.0 s");
+    assert_eq!(time_text(90.0, 1200.0, None), "t = 1.5 min");
+    assert_eq!(time_text(0.0, 0.0, None), "t = 0.0 µs");
+    // A document of 8 min is told in minutes, one of 0.001 h is not told in hours.
+    assert_eq!(time_text(90.0, 480.0, ClockUnit::named("min", 480.0)), "t = 1.50 min");
+    assert_eq!(time_text(2.0, 3.6, ClockUnit::named("h", 3.6)), "t = 2.00 s");
+    assert_eq!(ClockUnit::named("fortnight", 1e9), None);
 }
 
 #[test]
@@ -280,7 +284,7 @@ fn gallery_of_scenes() {
     let scene = crowd(3);
     let overlay = Overlay {
         title: "Two populations on glass".into(),
-        time: time_text(754.0, 1200.0),
+        time: time_text(754.0, 1200.0, None),
         key: Key::Names(vec![
             ("epithelial".into(), Colour::of_palette(0)),
             ("mesenchymal".into(), Colour::of_palette(1)),
@@ -303,7 +307,7 @@ fn gallery_of_scenes() {
     scene.add_arrow([-5.4, 0.0, 0.0], [-8.0, 0.0, 0.0], 0.12, dark);
     let overlay = Overlay {
         title: "Red cell pulled with 88 pN".into(),
-        time: time_text(2.0, 2.0),
+        time: time_text(2.0, 2.0, None),
         key: Key::Bar { map: ColourMap::Viridis, low: 0.0, high: 0.45, label: "stretch of facets".into() },
         ..Overlay::default()
     };
