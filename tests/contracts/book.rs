@@ -229,6 +229,21 @@ fn pictures_shown_to_users_are_there_and_none_lies_idle() {
 }
 
 #[test]
+fn the_gallery_shows_every_experiment_with_a_picture() {
+    let page = read(&book().join("gallery.md"));
+    let entries = std::fs::read_dir(root().join("experiments")).expect("the experiments");
+    let folders = entries.map(|entry| entry.expect("an entry")).filter(|entry| entry.path().is_dir());
+    let mut count = 0;
+    for name in folders.map(|entry| entry.file_name().to_string_lossy().into_owned()) {
+        let part = page.split(&format!("**[{name}](")).nth(1).unwrap_or_else(|| panic!("gallery.md lacks {name}"));
+        let own = part.split("**[").next().unwrap_or_default();
+        assert_eq!(own.matches("](../pictures/").count(), 1, "{name} has one picture");
+        count += 1;
+    }
+    assert_eq!(page.matches("**[").count(), count, "and nothing else is shown");
+}
+
+#[test]
 fn the_book_lists_every_kind_of_measure_and_plot() {
     let page = read(&book().join("documents.md"));
     let schema = serde_json::to_value(pseudopod::experiment::schema()).expect("a schema");
