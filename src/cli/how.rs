@@ -41,6 +41,11 @@ pub struct PageArgs {
 
 /// A token that the first signal cancels, so that the run stops after its step; a second signal ends the program at once.
 pub fn cancelled_by_signals() -> CancelToken {
+    cancelled_saying(Some("stopping after this step; once more to stop at once"))
+}
+
+/// The same for what stops at once, or says something else.
+pub fn cancelled_saying(words: Option<&'static str>) -> CancelToken {
     let token = CancelToken::new();
     let heard = token.clone();
     let listening = ctrlc::set_handler(move || {
@@ -48,7 +53,7 @@ pub fn cancelled_by_signals() -> CancelToken {
             std::process::exit(130);
         }
         heard.cancel();
-        say("stopping after this step; once more to stop at once");
+        words.iter().for_each(|words| say(words));
     });
     // A program that has a handler of its own stops as that one says.
     drop(listening);

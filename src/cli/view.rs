@@ -1,6 +1,6 @@
 //! `pseudopod view`: shows a result in the browser.
 
-use super::how::{How, PageArgs, cancelled_by_signals, reporter};
+use super::how::{How, PageArgs, cancelled_saying, reporter};
 use super::report::{After, Report, path_text};
 use crate::error::{Error, Fault, Result, say};
 use crate::run;
@@ -28,7 +28,7 @@ pub fn run(args: &ViewArgs) -> Result<Report> {
     let server = Server::start(&args.result, args.page.port, None)?;
     tell(&server, &args.result, &args.page);
     say("Ctrl-C ends it");
-    let token = cancelled_by_signals();
+    let token = cancelled_saying(None);
     while !token.is_cancelled() {
         std::thread::sleep(Duration::from_millis(50));
     }

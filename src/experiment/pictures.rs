@@ -259,3 +259,10 @@ pub struct PlotTable {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub label: Option<String>,
 }
+
+impl PlotKind {
+    /// Whether every cell has a line of its own besides the mean.
+    pub fn shows_each_cell(&self) -> bool {
+        matches!(self, Self::Series { each_cell: true, .. })
+    }
+}

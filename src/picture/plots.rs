@@ -117,6 +117,13 @@ fn curves(result: &ResultFile, document: &Document, plot: &Plot, x: &str, series
                 _ if shared => named,
                 _ => format!("{kind}: {named}"),
             };
+            // Among lines of single cells.
+            let is_mean = plot.kind.shows_each_cell() && are_means(&recording, y, kind);
+            let label = match (is_mean, label.is_empty()) {
+                (true, true) => "mean".to_owned(),
+                (true, false) => format!("{label}, mean"),
+                (false, _) => label,
+            };
             let line = Series::line(label, points);
             chart.series.push(match colour(kind).filter(|_| series.len() == 1 && !shared) {
                 Some(colour) => line.coloured(colour),
@@ -128,13 +135,26 @@ fn curves(result: &ResultFile, document: &Document, plot: &Plot, x: &str, series
         let fault = Fault::new(format!("no cell of {} has a value of {}", types.join(", "), series.join(", ")));
         return Err(Error::input(fault.help("choose a type of cells with that system of chemistry")));
     }
+    let mut all = series.iter().flat_map(|y| types.iter().map(move |kind| (y, kind)));
+    let is_mean = !plot.kind.shows_each_cell() && all.any(|(y, kind)| are_means(&recording, y, kind));
     let label = match series {
+        [only] if is_mean => format!("mean {}", label_of(result, only)),
         [only] => label_of(result, only),
         _ if alike => units.first().map_or_else(String::new, |unit| unit_text(unit)),
         _ => String::new(),
     };
+    let label = match (is_mean && series.len() > 1, label.is_empty()) {
+        (true, true) => "means of the cells".to_owned(),
+        (true, false) => format!("means of the cells ({label})"),
+        (false, _) => label,
+    };
     chart.y = Axis::linear(label);
     Ok(chart)
+}
+
+/// Whether the curve of a series of the cells of a type is the mean over several.
+fn are_means(recording: &Recording, series: &str, kind: &str) -> bool {
+    recording.cells.contains_key(series) && recording.cells_of(Some(kind)).is_ok_and(|cells| cells.len() > 1)
 }
 
 /// A thin line for every cell, pale in the colour that its type's mean has.

@@ -47,6 +47,11 @@ cells = "walker"
 name = "paths"
 kind = "tracks"
 [[plot]]
+name = "volumes"
+kind = "series"
+y = "volume"
+cells = "walker"
+[[plot]]
 name = "resters"
 kind = "series"
 y = "volume"
@@ -117,7 +122,7 @@ fn quantities_of_chemistry_are_series_with_a_line_for_each_cell() {
     let clocks = named(&charts, "clocks");
     // Two walkers have a clock; then the mean of theirs, and the bath of all.
     assert_eq!(points(&clocks.series[0])[3], [3.0, 3.0f64.sin()]);
-    let mean = clocks.series.iter().find(|series| series.label() == "walker: clock.U (µM)").unwrap();
+    let mean = clocks.series.iter().find(|series| series.label() == "walker: clock.U (µM), mean").unwrap();
     let expected = 0.5 * (3.0f64.sin() + 4.0f64.sin());
     assert!((points(mean)[3][1] - expected).abs() < 1e-12);
     assert!(!clocks.series.iter().any(|series| series.label() == "rester: clock.U (µM)"), "resters have no clock");
@@ -201,4 +206,17 @@ fn types_have_the_colours_of_the_pictures() {
     let resters = colours("resters");
     assert_eq!(resters.last(), Some(&Some(of_type[1])));
     assert_eq!(resters[0], Some(of_type[1].mixed(Colour([0xff; 3]), 0.62)));
+}
+
+#[test]
+fn averages_are_labelled_as_averages() {
+    let folder = tempfile::tempdir().unwrap();
+    let charts = charts(folder.path());
+    // Two walkers, one rester.
+    assert_eq!(named(&charts, "volumes").y.label, "mean volume (µm³)");
+    assert_eq!(named(&charts, "resters").y.label, "volume (µm³)");
+    assert_eq!(named(&charts, "resters").series.last().map(Series::label), Some(""));
+    // A series of the scene is none; what cells there are of the other type have no clock.
+    let labels = named(&charts, "clocks").series.iter().map(Series::label).filter(|label| !label.is_empty());
+    assert_eq!(labels.collect::<Vec<_>>(), ["walker: clock.U (µM), mean", "bath.level"]);
 }
