@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
-use std::time::{Duration, Instant};
+use std::time::{Duration, Instant, SystemTime};
 
 use rand::TryRng as _;
 use rand::rngs::SysRng;
@@ -38,13 +38,28 @@ struct Shared {
     path: PathBuf,
     scene: OnceLock<Scene>,
     live: Option<Arc<Live>>,
-    /// Frames, and whether more may come, when they were looked at last.
-    known: Mutex<Option<(usize, bool, Instant)>>,
+    /// What was found when the result was looked at last.
+    known: Mutex<Option<Known>>,
     /// Pages that are told of changes.
     pages: AtomicUsize,
     was_watched: AtomicBool,
     ends: AtomicBool,
 }
+
+/// A result as it was looked at last.
+#[derive(Clone, Copy)]
+struct Known {
+    frames: usize,
+    /// Whether more may come.
+    running: bool,
+    /// When the file was made, and its length: a version that is newer has others.
+    version: Option<(SystemTime, u64)>,
+    /// When it may be looked at again.
+    next: Instant,
+}
+
+/// A look is followed by so many times what it took without one: a run that is watched gives up little of its time.
+const SPARED: u32 = 100;
 
 impl Server {
     /// Serves a result at a port, a free one when it is 0, until it is dropped. With a run that goes on, the result need not be there yet.
@@ -266,15 +281,25 @@ impl Shared {
         json!({ "frames": frames, "running": running, "run": run }).to_string()
     }
 
-    /// Frames that there are, and whether more may come. Of a result that grows these are looked for at most once a second.
+    /// Frames that there are, and whether more may come. A result that grows is looked at again once there is a newer version of it, at most once a
+    /// second.
     fn look(&self) -> (usize, bool) {
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
         let ended = self.live.as_ref().is_some_and(|live| live.told().phase == Phase::Ended);
+        let version = std::fs::metadata(&self.path).ok().and_then(|data| Some((data.modified().ok()?, data.len())));
         match *known {
-            Some((frames, false, _)) => return (frames, false),
-            Some((frames, true, at)) if at.elapsed() < Duration::from_secs(1) && !ended => return (frames, true),
+            Some(Known { frames, running: false, .. }) => return (frames, false),
+            Some(Known { frames, running: true, next, .. }) if Instant::now() < next && !ended => {
+                return (frames, true);
+            }
+            Some(Known { frames, running: true, version: before, .. })
+                if before == version && !ended && self.live.is_some() =>
+            {
+                return (frames, true);
+            }
             _ => {}
         }
+        let began = Instant::now();
         let mut found = match self.scene.get() {
             Some(scene) => scene.renew().ok(),
             None => Scene::open(&self.path).ok().map(|scene| {
@@ -288,7 +313,10 @@ impl Shared {
             *running = !ended;
         }
         let (frames, running) = found.unwrap_or((0, true));
-        *known = Some((frames, running, Instant::now()));
+        // Nothing to open is found out at once.
+        let pause = if found.is_some() { Duration::from_secs(1).max(SPARED * began.elapsed()) } else { LOOK };
+        let version = version.filter(|_| found.is_some());
+        *known = Some(Known { frames, running, version, next: Instant::now() + pause });
         (frames, running)
     }
 }

@@ -45,15 +45,24 @@ impl Outlines {
         1.0 - DARKNESS * covered as f32 / (SAMPLES * SAMPLES) as f32
     }
 
-    /// Whether a neighbour of a sample shows another cell.
+    /// Whether another cell begins beside a sample, where both go on: what is one sample wide is mostly a miss at a side that facets share.
     fn is_line(&self, sample: usize) -> bool {
         let own = self.bodies[sample];
-        let column = sample % self.width;
-        let other = |neighbour: usize| self.bodies.get(neighbour).is_some_and(|body| *body != NOTHING && *body != own);
+        let (column, last) = (sample % self.width, self.width - 1);
+        let at = |by: isize| sample.checked_add_signed(by).and_then(|at| self.bodies.get(at)).copied();
+        // What lies beyond the band is taken for more of the same.
+        let begins = |by: isize, before: bool, beyond: bool| {
+            let next = at(by).filter(|body| *body != NOTHING && *body != own);
+            next.is_some_and(|next| {
+                (!before || at(-by).is_none_or(|body| body == own))
+                    && (!beyond || at(2 * by).is_none_or(|body| body == next))
+            })
+        };
+        let row = self.width as isize;
         own != NOTHING
-            && ((column > 0 && other(sample - 1))
-                || (column + 1 < self.width && other(sample + 1))
-                || (sample >= self.width && other(sample - self.width))
-                || other(sample + self.width))
+            && ((column > 0 && begins(-1, column < last, column > 1))
+                || (column < last && begins(1, column > 0, column + 1 < last))
+                || begins(-row, true, true)
+                || begins(row, true, true))
     }
 }

@@ -67,7 +67,9 @@ pub(super) fn skins(scene: &Scene, view: &View) -> Vec<Skin> {
     let planes = planes(scene);
     let hides_inside = scene.cut.is_none();
     let skin = |shape: &Shape| {
-        let parts = ((f64::from(shape.parts) * share) as u16).max(1);
+        // Where things are cut open, what is inside of what is told by facets: skins of cells that press on each other bulge into each other,
+        // and the faces of cuts would have holes there.
+        let parts = if hides_inside { ((f64::from(shape.parts) * share) as u16).max(1) } else { 1 };
         shape.skin(parts, &planes, hides_inside.then_some(view))
     };
     shapes.par_iter().map(skin).collect()
