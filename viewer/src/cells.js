@@ -127,7 +127,9 @@ void main() {
   }
   skin = toLinear(skin);
   vec3 normal = normalize(bent);
-  if (!gl_FrontFacing) {
+  // The outside faces the viewer where it lies on the side that is seen; gl_FrontFacing means another thing in each pass.
+  bool isOutside = dot(cross(dFdx(world), dFdy(world)), normal) > 0.0;
+  if (!isOutside) {
     if (cut.w < 1e29 && opacity >= 1.0) {
       // The inside of what is cut is flat and pale.
       colour = vec4(toScreen(0.35 + 0.65 * skin), 1.0);
@@ -140,7 +142,7 @@ void main() {
   // A thin skin seen edge on is looked through at a slant and hides more.
   float slant = 1.0 - clamp(facing, 0.0, 1.0);
   colour = vec4(lit(skin, normal, viewer), opacity + (1.0 - opacity) * slant * slant);
-  if (!gl_FrontFacing) colour.a *= opacity < 1.0 ? 0.4 : 1.0;
+  if (!isOutside) colour.a *= opacity < 1.0 ? 0.4 : 1.0;
   if (cell == chosen) colour.rgb = mix(colour.rgb, vec3(1.0, 0.85, 0.1), 0.2 + 0.6 * pow(1.0 - clamp(facing, 0.0, 1.0), 2.0));
 }
 `;
@@ -226,8 +228,27 @@ export class Cells {
     for (const { userData: { skin } } of this.meshes) Object.assign(skin, { transparent: opacity < 1, depthWrite: opacity >= 1, forceSinglePass: opacity >= 1 });
   }
 
+  /** The links within cells, as lines. */
+  links() {
+    const all = [];
+    for (let cell = 0; cell < this.frame.cells; cell += 1) {
+      const first = this.firsts[cell];
+      for (const [a, b] of this.hidden.has(this.kinds[cell]) ? [] : this.types[this.kinds[cell]].links) all.push(...position(this.frame, first + a), ...position(this.frame, first + b), 1);
+    }
+    return { count: all.length / 7, all: new Float32Array(all) };
+  }
+
+  /** A colour for each id, far from those of the ids before it. */
+  colourByIds() {
+    const turns = Array.from({ length: 64 }, (_, k) => new THREE.Color().setHSL((k * 0.618034) % 1, 0.55 + 0.25 * ((k >> 1) & 1), 0.45 + 0.12 * (k % 3), THREE.SRGBColorSpace));
+    this.setMap(turns.map((colour) => colour.getHex(THREE.SRGBColorSpace)).map((hex) => [hex >> 16, (hex >> 8) & 255, hex & 255]));
+    this.colour(Float32Array.from(this.frame.ids, (id) => id % 64), 'cells', [0, 63]);
+  }
+
   /** Colours of a scale, in sRGB. */
   setMap(colours) {
+    if (this.map === colours) return;
+    this.map = colours;
     const bytes = new Uint8Array(colours.flatMap((colour) => [...colour, 255]));
     const map = new THREE.DataTexture(bytes, colours.length, 1, THREE.RGBAFormat, THREE.UnsignedByteType);
     map.minFilter = THREE.LinearFilter;
@@ -329,6 +350,7 @@ export class Cells {
 
   /** Whether skins are bent between their atoms, or flat. */
   smooth(isSmooth) {
+    if (isSmooth === this.isSmooth) return;
     this.isSmooth = isSmooth;
     this.kinds = undefined;
     if (this.frame) this.place(this.frame);

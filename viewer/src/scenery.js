@@ -283,6 +283,7 @@ void main() { colour = vec4(paint * (1.0 - 0.25 * abs(lift)), 1.0); }
 
 const KINDS = {
   fibres: { paint: [0.66, 0.11, 0.18], width: 4, isArrow: false },
+  links: { paint: [0.23, 0.25, 0.29], width: 2.5, isArrow: false },
   contacts: { paint: [0.2, 0.23, 0.28], width: 2, isArrow: false },
   traction: { paint: [0.84, 0.37, 0.0], width: 2.2, isArrow: true },
   loads: { paint: [0.23, 0.25, 0.29], width: 3, isArrow: true },

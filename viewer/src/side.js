@@ -7,7 +7,7 @@ import { json } from './source.js';
 
 const byId = (id) => document.getElementById(id);
 
-const LINES = { fibres: 'Fibres', contacts: 'Contacts', traction: 'Tractions', loads: 'Loads' };
+const LINES = { links: 'Links', fibres: 'Fibres', contacts: 'Contacts', traction: 'Tractions', loads: 'Loads' };
 
 export class Side {
   constructor(viewer) {
@@ -33,7 +33,7 @@ export class Side {
     parts.push(element('h2', {}, 'View'), views);
     parts.push(element('div', { className: 'row' }, check('Parallel', state.parallel, set('parallel')), check('Dark', state.theme === 'dark', (dark) => viewer.set('theme', dark ? 'dark' : 'light')), check('Smooth', state.smooth, set('smooth')), check('Title', state.title, set('title'))));
     parts.push(element('h2', {}, 'Cells'));
-    const colours = [['type', 'Type'], ...scene.quantities.map(({ name, label }) => [name, label])];
+    const colours = [['type', 'Type'], ['id', 'Cell'], ...scene.quantities.map(({ name, label }) => [name, label])];
     parts.push(row('Colour by', choice(colours, state.colour, (value) => this.colour(value))));
     this.ends = ['Lowest', 'Highest'].map((name) => element('input', { type: 'number', step: 'any', 'aria-label': `${name} number of the colours`, onchange: () => this.range() }));
     this.endsRow = element('div', { className: 'row' }, element('label', { for: 'low' }, 'From, to'), ...this.ends, button('Auto', 'The ends of all frames', () => viewer.set('range', undefined).then(() => this.tellEnds())));
@@ -90,7 +90,7 @@ export class Side {
 
   tellEnds() {
     const { scale, state } = this.viewer;
-    this.endsRow.hidden = state.colour === 'type';
+    this.endsRow.hidden = state.colour === 'type' || state.colour === 'id';
     if (scale) scale.ends.forEach((end, k) => { this.ends[k].value = String(Number(end.toPrecision(5))); });
   }
 

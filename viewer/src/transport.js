@@ -68,7 +68,7 @@ export class Transport {
     const { source, state, frames } = this.viewer;
     for (let frame = state.frame + 1; frame < Math.min(frames, state.frame + 4); frame += 1) {
       source.bytes(`frame/${frame}`);
-      if (state.colour !== 'type') source.bytes(`values/${frame}/${state.colour}`);
+      if (state.colour !== 'type' && state.colour !== 'id') source.bytes(`values/${frame}/${state.colour}`);
       if (state.field !== 'none') source.bytes(`field/${frame}/${state.field}`);
     }
   }

@@ -24,12 +24,14 @@ export class Viewer {
     const isDark = window.matchMedia('(prefers-color-scheme: dark)').matches;
     const field = scene.fields.flatMap((field) => field.species.map((species) => `${field.name}.${species.name}`));
     const named = field.find((name) => name === look.field || name.startsWith(`${look.field}.`)) ?? field[0];
-    const known = (name) => name === 'type' || scene.quantities.some((quantity) => quantity.name === name);
+    // What the page finds by itself: links within cells, and cells by their ids.
+    if (scene.types.some((type) => type.links.length)) scene.lines.unshift('links');
+    const known = (name) => name === 'type' || name === 'id' || scene.quantities.some((quantity) => quantity.name === name);
     this.state = {
       frame: 0, colour: known(look.colour_by) ? look.colour_by : 'type', range: look.range ?? undefined,
       field: look.field === 'none' ? 'none' : named ?? 'none', axis: 2, share: 0.5, alpha: 1,
-      lines: [hasFibres && 'fibres', look.loads && scene.lines.includes('loads') && 'loads'].filter(Boolean),
-      opacity: hasFibres ? 0.35 : 1, cut: undefined, hidden: [], tails: false, parallel: true, theme: isDark ? 'dark' : 'light',
+      lines: [scene.lines.includes('links') && 'links', hasFibres && 'fibres', look.loads && scene.lines.includes('loads') && 'loads'].filter(Boolean),
+      opacity: hasFibres || scene.lines.includes('links') ? 0.35 : 1, cut: undefined, hidden: [], tails: false, parallel: true, theme: isDark ? 'dark' : 'light',
       cell: undefined, number: undefined, grid: true, title: true, smooth: true,
       ...kept,
     };
@@ -55,7 +57,6 @@ export class Viewer {
     this.cells = new Cells(scene.types);
     this.eye = new Eye(this.canvas, () => this.dirty());
     this.screen = { value: new THREE.Vector2(1, 1) };
-    this.cells.setMap(scene.maps.values);
     this.space.add(this.cells.group, this.cells.shadows);
     this.lines = new Map();
     this.tails = new Tails(this);
@@ -63,7 +64,7 @@ export class Viewer {
     const first = frameOf(await this.source.bytes(`frame/${Math.min(state.frame, this.frames - 1)}`));
     this.box = this.around(first, frameOf(await this.source.bytes('frame/0')));
     this.theme(state.theme);
-    this.cells.isSmooth = state.smooth;
+    this.cells.isSmooth = state.smooth && state.cut === undefined;
     for (const kind of state.hidden) this.cells.hide(kind, true);
     this.side = new Side(this);
     this.transport = new Transport(this);
@@ -103,9 +104,9 @@ export class Viewer {
     const turn = (this.turn = (this.turn ?? 0) + 1);
     const { colour, field, lines } = this.state;
     const asked = [this.source.bytes(`frame/${frame}`)];
-    asked.push(colour === 'type' ? undefined : this.source.bytes(`values/${frame}/${colour}`));
+    asked.push(colour === 'type' || colour === 'id' ? undefined : this.source.bytes(`values/${frame}/${colour}`));
     asked.push(field === 'none' ? undefined : this.source.bytes(`field/${frame}/${field}`));
-    lines.forEach((kind) => asked.push(this.source.bytes(`lines/${frame}/${kind}`)));
+    lines.forEach((kind) => asked.push(kind === 'links' ? undefined : this.source.bytes(`lines/${frame}/${kind}`)));
     const [atoms, values, levels, ...found] = await Promise.all(asked);
     // Whoever goes on meanwhile sees the later one.
     if (turn !== this.turn || !atoms) return;
@@ -113,6 +114,7 @@ export class Viewer {
     await this.paint(values);
     if (levels && this.slice) this.slice.show(fieldOf(levels), await this.endsOf(field, this.scene.look.field_range));
     lines.forEach((kind, k) => found[k] && this.linesOf(kind).show(linesOf(found[k])));
+    if (lines.includes('links')) this.linesOf('links').show(this.cells.links());
     this.obstacles.move(this.course.gone.map((gone) => gone?.[frame]));
     this.tails.show(frame);
     this.drawn.frame = frame;
@@ -141,6 +143,12 @@ export class Viewer {
 
   async paint(values) {
     const { colour, range } = this.state;
+    if (colour === 'id') {
+      this.cells.colourByIds();
+      this.scale = undefined;
+      return;
+    }
+    this.cells.setMap(this.scene.maps.values);
     if (colour === 'type' || !values) {
       this.cells.colour(undefined);
       this.scale = undefined;
@@ -213,7 +221,8 @@ export class Viewer {
     if (key === 'opacity') this.cells.hides(value);
     if (key === 'lines') for (const [kind, lines] of this.lines) lines.mesh.visible = value.includes(kind);
     if (key === 'tails') this.tails.show(this.state.frame);
-    if (key === 'smooth') this.cells.smooth(value);
+    // Skins that are bent go into each other where cells press, and a cut would show that.
+    if (key === 'smooth' || key === 'cut') this.cells.smooth(this.state.smooth && this.state.cut === undefined);
     if (key === 'grid') {
       this.obstacles.group.visible = value;
       this.cells.stand(value ? this.obstacles.floor : undefined);
@@ -291,7 +300,8 @@ export class Viewer {
       time: timeText(this.time, this.scene.until, this.scene.clock),
       bar: true,
       perMicron: this.canvas.clientHeight / (this.eye.seen() * Math.max(1, 1 / this.eye.aspect)),
-      names: this.scene.types.map(({ name, colour }, kind) => ({ name, colour, count: this.cells.counts?.[kind] ?? 0 })),
+      // Colours that are those of ids tell no type.
+      names: this.state.colour === 'id' ? [] : this.scene.types.map(({ name, colour }, kind) => ({ name, colour, count: this.cells.counts?.[kind] ?? 0 })),
       scale: this.live ? undefined : this.scale,
       field: this.slice && this.fieldScale,
       axes: [[1, 0, 0], [0, 1, 0], [0, 0, 1]].map((axis) => [new THREE.Vector3(...axis).dot(right), new THREE.Vector3(...axis).dot(up)]),
