@@ -94,7 +94,7 @@ pub fn run(args: &PlotArgs) -> Result<Report> {
         return plot_tracks(args, read);
     }
     let result = ResultFile::open(&args.result)?;
-    let document = crate::run::document_of(result.header(), &args.result)?;
+    let document = crate::run::recorded_document_of(result.header(), &args.result)?;
     let mut plots = wanted(args, &document.experiment.plot)?;
     if let Some(name) = &args.cells {
         known(name, &result.layout().type_names())?;

@@ -77,7 +77,7 @@ pub struct RenderArgs {
 /// A result or series that is not there, a file that exists or cannot be written.
 pub fn run(args: &RenderArgs) -> Result<Report> {
     let result = ResultFile::open(&args.result)?;
-    let document = crate::run::document_of(result.header(), &args.result)?;
+    let document = crate::run::recorded_document_of(result.header(), &args.result)?;
     let mut picture = document.experiment.picture.clone();
     args.colour_by.iter().for_each(|series| picture.colour_by.clone_from(series));
     picture.colour_range = args.range.or(picture.colour_range);

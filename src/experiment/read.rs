@@ -1,6 +1,7 @@
 //! Reads documents and checks them as a whole.
 
 use super::document::{Document, near_file};
+use super::semantics::Files;
 use super::tree::{Node, Value};
 use super::{Experiment, check, schema, semantics};
 use crate::error::{Error, Fault, Location, Result, Source};
@@ -47,6 +48,31 @@ impl Document {
         sets: &[String],
         equations: BTreeMap<String, String>,
     ) -> Result<Self> {
+        Self::parse_with(Files::Needed, name, text, base_dir, sets, equations)
+    }
+
+    /// As [`Document::parse_beside`] of what has been run already, to look at its result: meshes and tables that it names may be gone since.
+    ///
+    /// # Errors
+    /// As [`Document::parse`], but for files that are not there.
+    pub fn parse_recorded(
+        name: &str,
+        text: &str,
+        base_dir: &Path,
+        sets: &[String],
+        equations: BTreeMap<String, String>,
+    ) -> Result<Self> {
+        Self::parse_with(Files::MayBeGone, name, text, base_dir, sets, equations)
+    }
+
+    fn parse_with(
+        files: Files,
+        name: &str,
+        text: &str,
+        base_dir: &Path,
+        sets: &[String],
+        equations: BTreeMap<String, String>,
+    ) -> Result<Self> {
         let source = Arc::new(Source { name: name.to_owned(), text: text.to_owned() });
         let mut tree = Node::parse(&source).map_err(Error::Input)?;
         let written_end = end_of(&tree);
@@ -81,7 +107,7 @@ impl Document {
                 tree,
             };
             let late;
-            (faults, late) = semantics::check(&document);
+            (faults, late) = semantics::check(&document, files);
             if faults.is_empty() {
                 document.leave_out(&late);
                 return Ok(document);

@@ -20,6 +20,15 @@ mod rigid;
 mod scene;
 mod tools;
 
+/// Whether files that a document names have to be there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Files {
+    /// They are read when it is run.
+    Needed,
+    /// It has been run, and its result is looked at.
+    MayBeGone,
+}
+
 pub(super) struct Check<'a> {
     document: &'a Document,
     faults: Vec<Fault>,
@@ -28,9 +37,9 @@ pub(super) struct Check<'a> {
 }
 
 /// Finds the faults that the keys of a well-formed document have together, and what is left out where its run is cut short.
-pub(super) fn check(document: &Document) -> (Vec<Fault>, Vec<Late>) {
+pub(super) fn check(document: &Document, files: Files) -> (Vec<Fault>, Vec<Late>) {
     let mut check = Check { document, faults: Vec::new(), late: Vec::new() };
-    for reference in &document.references {
+    for reference in document.references.iter().filter(|one| one.kind != "file" || files == Files::Needed) {
         check.reference(reference);
     }
     for (name, cell) in &document.experiment.cells {

@@ -179,11 +179,24 @@ fn can_go_on(error: Error, result: &Path) -> Error {
 
 /// The document that a result was made from; paths start from the folder of the document if it is still there.
 pub fn document_of(header: &Header, result: &Path) -> Result<Document> {
+    let equations = header.equations.iter().cloned().collect();
+    Document::parse_beside(&header.document, &header.experiment, &base_of(header, result), &header.sets, equations)
+}
+
+/// The document of a result that is looked at: as [`document_of`], but files that it names may be gone, as where somebody else made the result.
+///
+/// # Errors
+/// A damaged file.
+pub fn recorded_document_of(header: &Header, result: &Path) -> Result<Document> {
+    let equations = header.equations.iter().cloned().collect();
+    Document::parse_recorded(&header.document, &header.experiment, &base_of(header, result), &header.sets, equations)
+}
+
+/// Where paths in the document of a result start from.
+fn base_of(header: &Header, result: &Path) -> PathBuf {
     let folder = |path: &Path| path.parent().map(Path::to_path_buf).unwrap_or_default();
     let document = Path::new(&header.document);
-    let base = if document.exists() { folder(document) } else { folder(result) };
-    let equations = header.equations.iter().cloned().collect();
-    Document::parse_beside(&header.document, &header.experiment, &base, &header.sets, equations)
+    if document.exists() { folder(document) } else { folder(result) }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -60,7 +60,7 @@ impl Scene {
     /// As [`ResultFile::open`].
     pub fn open(path: &Path) -> Result<Self> {
         let result = ResultFile::open(path)?;
-        let document = crate::run::document_of(result.header(), path)?;
+        let document = crate::run::recorded_document_of(result.header(), path)?;
         let (ranges, loads) = (Mutex::default(), Mutex::default());
         Ok(Self { path: path.to_path_buf(), document, result: RwLock::new(result), ranges, loads, within: None })
     }
@@ -205,11 +205,12 @@ impl Scene {
             "loads" => {
                 let mut loads = self.loads.lock().unwrap_or_else(PoisonError::into_inner);
                 if loads.is_none() {
-                    *loads = Some(LoadArrows::of(&self.document)?);
+                    // What is not there any more, such as a mesh in a file, leaves the arrows out.
+                    *loads = LoadArrows::of(&self.document).ok();
                 }
                 let time = result.times()?[frame];
-                let arrows = loads.as_ref().map(|loads| loads.at(time, layout, &cells, &positions));
-                arrows.into_iter().flatten().map(|ends| (ends, 1.0)).collect()
+                let Some(loads) = loads.as_ref() else { return Ok(None) };
+                loads.at(time, layout, &cells, &positions).into_iter().map(|ends| (ends, 1.0)).collect()
             }
             _ => return Ok(None),
         };
