@@ -2,9 +2,9 @@
 
 use super::chart::{Axis, Chart, Scale, Series, Stroke};
 use super::colour::Colour;
+use super::documented::type_colours;
 use super::field_plots;
 use super::field_view::{unit_text, with_unit};
-use super::stage::type_colours;
 use super::track_plots::{self, Group, SECTORS};
 use crate::analysis::over::Over;
 use crate::analysis::recording::{POSITION, Recording};

@@ -4,13 +4,13 @@ use std::collections::HashMap;
 
 use super::Image;
 use super::arrows::LoadArrows;
-use super::colour::Colour;
 use super::display::Display;
+use super::documented::{clock_of, type_colours};
 use super::field_view::FieldView;
 use super::from_result::{Framing, Look, Snapshot, Values, picture_of};
 use super::instant::frame_at;
 use super::quantities::LEAST;
-use super::render::{ClockUnit, Edges, ScaleBar, Sheet};
+use super::render::{Edges, ScaleBar, Sheet};
 use super::shown::{Of, Shown};
 use crate::Vec3;
 use crate::error::Result;
@@ -167,19 +167,6 @@ impl<'a> Stage<'a> {
     pub fn draw(&self, shot: &Shot, framing: &Framing, picture: &Picture) -> Image {
         picture_of(&self.snapshot(shot), &self.look, framing, picture.width as usize, picture.height as usize)
     }
-}
-
-/// The unit of times that the document of a run uses.
-pub fn clock_of(document: &Document) -> Option<ClockUnit> {
-    document.clock_unit().and_then(|unit| ClockUnit::named(unit, document.experiment.run.until.value()))
-}
-
-/// The colours of the types of cells of a result: those of its document, else of the palette.
-pub fn type_colours(result: &ResultFile, document: &Document) -> Vec<Colour> {
-    let given = |name: &String| document.experiment.cells.get(name).and_then(|cell| cell.colour);
-    let types = result.layout().type_names();
-    let colour = |(i, name)| given(name).map_or_else(|| Colour::of_palette(i), |colour| Colour(colour.0));
-    types.iter().enumerate().map(colour).collect()
 }
 
 fn look_of(result: &ResultFile, document: &Document, picture: &Picture, shown: &Shown) -> Look {

@@ -8,11 +8,11 @@ use crate::error::Result;
 use crate::experiment::Document;
 use crate::output::{FieldLayout, Obstacle, ResultFile};
 use crate::picture::ColourMap;
+use crate::picture::documented::{clock_of, type_colours};
 use crate::picture::field_view::species_label;
 use crate::picture::plots::label_of;
 use crate::picture::render::ClockUnit;
 use crate::picture::shown::{Of, Shown};
-use crate::picture::stage::{clock_of, type_colours};
 
 /// Parts of a scale of colours.
 const COLOURS: usize = 64;

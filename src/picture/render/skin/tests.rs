@@ -195,7 +195,7 @@ fn what_is_far_from_the_eye_stays_as_it_is() {
     let back = |piece: &&Piece| piece.parts == 1;
     assert!(pieces(&scene).iter().filter(back).count() >= 8);
     let cut = Scene { cut: Some([0.0, 2.0, 0.0]), ..scene };
-    assert_eq!(pieces(&cut).iter().filter(back).count(), 0, "what is cut open is seen from inside");
+    assert!(pieces(&cut).iter().all(|piece| piece.parts == 1), "cuts are told by facets");
 }
 
 #[test]
