@@ -6,6 +6,7 @@
 mod charts;
 mod describe;
 mod film;
+mod http;
 mod live;
 mod pack;
 pub mod page;

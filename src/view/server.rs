@@ -1,6 +1,7 @@
 //! The page and its data over HTTP: on this machine alone, at an address that nobody guesses.
 
 use std::io::Write;
+use std::net::{SocketAddr, TcpListener, TcpStream};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
@@ -9,30 +10,24 @@ use std::time::{Duration, Instant, SystemTime};
 use rand::TryRng as _;
 use rand::rngs::SysRng;
 use serde_json::json;
-use tiny_http::{Header, Method, Request, Response, StatusCode};
 
+use super::http::{self, Answers, Asked, Reply};
 use super::live::{Live, Phase, Wish};
 use super::page;
 use super::scene::{Answer, Scene};
 use crate::error::{Error, Result};
 
-/// Threads that answer.
-const THREADS: usize = 4;
-
 /// Time between two looks whether something is new.
 const LOOK: Duration = Duration::from_millis(250);
-
-/// What the page may load: itself, and nothing from elsewhere.
-const POLICY: &str = "default-src 'self'; img-src 'self' data: blob:; media-src blob:; style-src 'self' 'unsafe-inline'; frame-ancestors 'none'";
 
 /// Serves a result, or a run that goes on, to pages on this machine.
 pub struct Server {
     shared: Arc<Shared>,
     address: String,
+    socket: SocketAddr,
 }
 
 struct Shared {
-    http: tiny_http::Server,
     /// The first part of all paths.
     key: String,
     path: PathBuf,
@@ -71,19 +66,19 @@ impl Server {
         if live.is_none() {
             let _ = scene.set(Scene::open(path)?);
         }
-        let http = tiny_http::Server::http(("127.0.0.1", port)).map_err(|error| Error::Machine {
+        let cannot = |error: &std::io::Error| Error::Machine {
             message: format!("nothing can be served at port {port} of 127.0.0.1: {error}"),
             help: "name another port with --port, or none for a free one".into(),
-        })?;
-        let port = http.server_addr().to_ip().map_or(port, |address| address.port());
+        };
+        let listener = TcpListener::bind(("127.0.0.1", port)).map_err(|error| cannot(&error))?;
+        let socket = listener.local_addr().map_err(|error| cannot(&error))?;
         let key = SysRng.try_next_u64().map_err(|error| Error::Machine {
             message: format!("the system has no random numbers for the address of the page: {error}"),
             help: "write the page into a file instead: pseudopod export --html".into(),
         })?;
         let key = format!("{key:016x}");
-        let address = format!("http://127.0.0.1:{port}/{key}/");
+        let address = format!("http://{socket}/{key}/");
         let shared = Arc::new(Shared {
-            http,
             key,
             path: path.to_path_buf(),
             scene,
@@ -93,19 +88,9 @@ impl Server {
             was_watched: AtomicBool::new(false),
             ends: AtomicBool::new(false),
         });
-        for _ in 0..THREADS {
-            let shared = Arc::clone(&shared);
-            std::thread::spawn(move || {
-                while !shared.ends.load(Ordering::Relaxed) {
-                    match shared.http.recv_timeout(LOOK) {
-                        Ok(Some(request)) => shared.answer(request),
-                        Ok(None) => {}
-                        Err(_) => std::thread::sleep(LOOK),
-                    }
-                }
-            });
-        }
-        Ok(Self { shared, address })
+        let serving = Arc::clone(&shared);
+        std::thread::spawn(move || http::serve(&listener, &serving.ends, &serving));
+        Ok(Self { shared, address, socket })
     }
 
     /// Where the page is: an address with a key, without which nothing is answered.
@@ -127,79 +112,53 @@ impl Server {
 impl Drop for Server {
     fn drop(&mut self) {
         self.shared.ends.store(true, Ordering::Relaxed);
-        self.shared.http.unblock();
+        // Whoever waits for the next connection looks whether to go on when one comes.
+        drop(TcpStream::connect(self.socket));
     }
 }
 
-fn header(name: &str, value: &str) -> Header {
-    Header::from_bytes(name, value).expect("headers are plain text")
-}
+impl Answers for Shared {
+    const POLICY: &'static str = "default-src 'self'; img-src 'self' data: blob:; media-src blob:; style-src 'self' 'unsafe-inline'; frame-ancestors 'none'";
 
-/// What a request is answered with.
-struct Reply {
-    status: u16,
-    kind: &'static str,
-    bytes: Vec<u8>,
-}
-
-impl Reply {
-    fn new(kind: &'static str, bytes: impl Into<Vec<u8>>) -> Self {
-        Self { status: 200, kind, bytes: bytes.into() }
-    }
-
-    fn refused(status: u16, words: &str) -> Self {
-        Self { status, kind: "text/plain; charset=utf-8", bytes: format!("{words}\n").into() }
-    }
-}
-
-impl Shared {
-    fn answer(self: &Arc<Self>, request: Request) {
-        let path = request.url().split('?').next().unwrap_or_default().to_owned();
-        let below = path.strip_prefix('/').and_then(|path| path.strip_prefix(self.key.as_str()));
+    fn answer(&self, asked: &Asked) -> Option<Reply> {
+        let below = asked.path.strip_prefix('/').and_then(|path| path.strip_prefix(self.key.as_str()));
         let below = below.and_then(|path| path.strip_prefix('/')).map(decoded);
-        let reply = match (below.as_deref(), self.is_from_here(&request)) {
+        Some(match (below.as_deref(), is_from_here(asked)) {
             // A page of another site, whose name was made to mean this machine, is told nothing.
             (_, false) => Reply::refused(403, "this is answered to pages of this machine only"),
             (None, true) => Reply::refused(404, "nothing is here: open the whole address that pseudopod has printed"),
-            (Some("events"), true) => return self.tell(request),
-            (Some(below), true) => self.reply(request.method(), below),
-        };
-        let length = Some(reply.bytes.len());
-        let headers = [
-            ("Content-Type", reply.kind),
-            ("Cache-Control", "no-store"),
-            ("Content-Security-Policy", POLICY),
-            ("X-Content-Type-Options", "nosniff"),
-            ("Referrer-Policy", "no-referrer"),
-        ];
-        let headers = headers.map(|(name, value)| header(name, value)).to_vec();
-        let response = Response::new(StatusCode(reply.status), headers, &reply.bytes[..], length, None);
-        // A page that is gone needs no answer.
-        let _ = request.respond(response);
+            (Some("events"), true) => return None,
+            (Some(below), true) => self.reply(&asked.method, below),
+        })
     }
 
-    /// Whether a request names this machine, and comes from its own page where it says from which.
-    fn is_from_here(&self, request: &Request) -> bool {
-        let header = |name: &str| {
-            let found =
-                request.headers().iter().find(|header| header.field.as_str().as_str().eq_ignore_ascii_case(name));
-            found.map(|header| header.value.as_str().to_owned())
-        };
-        let is_here = |name: &str| {
-            let host = name.rsplit_once(':').map_or(name, |(host, _)| host);
-            host == "127.0.0.1" || host.eq_ignore_ascii_case("localhost")
-        };
-        let origin = header("Origin");
-        header("Host").is_some_and(|host| is_here(&host))
-            && origin.is_none_or(|origin| origin.strip_prefix("http://").is_some_and(is_here))
+    /// Tells a page what is new for as long as it listens, as server-sent events.
+    fn tell(&self, page: &mut dyn Write) -> std::io::Result<()> {
+        self.pages.fetch_add(1, Ordering::Relaxed);
+        self.was_watched.store(true, Ordering::Relaxed);
+        let told = self.tell_to(page);
+        self.pages.fetch_sub(1, Ordering::Relaxed);
+        told
     }
+}
 
-    fn reply(&self, method: &Method, below: &str) -> Reply {
+/// Whether a request names this machine, and comes from its own page where it says from which.
+fn is_from_here(asked: &Asked) -> bool {
+    let is_here = |name: &str| {
+        let host = name.rsplit_once(':').map_or(name, |(host, _)| host);
+        host == "127.0.0.1" || host.eq_ignore_ascii_case("localhost")
+    };
+    asked.host.as_deref().is_some_and(is_here)
+        && asked.origin.as_deref().is_none_or(|origin| origin.strip_prefix("http://").is_some_and(is_here))
+}
+
+impl Shared {
+    fn reply(&self, method: &str, below: &str) -> Reply {
         match (method, below) {
-            (Method::Get, "") => Reply::new("text/html; charset=utf-8", page::served()),
-            (Method::Get, "viewer.js") => Reply::new("text/javascript; charset=utf-8", page::SCRIPT),
-            (Method::Get, "style.css") => Reply::new("text/css; charset=utf-8", page::STYLE),
-            (Method::Get, "now") => match self.live.as_ref().and_then(|live| live.picture()) {
+            ("GET", "") => Reply::new("text/html; charset=utf-8", page::served()),
+            ("GET", "viewer.js") => Reply::new("text/javascript; charset=utf-8", page::SCRIPT),
+            ("GET", "style.css") => Reply::new("text/css; charset=utf-8", page::STYLE),
+            ("GET", "now") => match self.live.as_ref().and_then(|live| live.picture()) {
                 Some((time, picture)) => {
                     let mut bytes = time.to_le_bytes().to_vec();
                     bytes.extend(picture.iter());
@@ -208,7 +167,7 @@ impl Shared {
                 // Nothing to see yet, which is no fault.
                 None => Reply { status: 204, kind: "application/octet-stream", bytes: Vec::new() },
             },
-            (Method::Post, wish) => match (&self.live, wish) {
+            ("POST", wish) => match (&self.live, wish) {
                 (Some(live), "go" | "pause" | "stop") => {
                     live.want(match wish {
                         "go" => Wish::Go,
@@ -219,7 +178,7 @@ impl Shared {
                 }
                 _ => Reply::refused(404, "no run goes on here"),
             },
-            (Method::Get, below) => below
+            ("GET", below) => below
                 .strip_prefix("data/")
                 .map_or_else(|| Reply::refused(404, "nothing is here"), |request| self.data(request)),
             _ => Reply::refused(405, "this is neither asked for nor told so"),
@@ -236,23 +195,7 @@ impl Shared {
         }
     }
 
-    /// Tells a page what is new for as long as it listens, as server-sent events.
-    fn tell(self: &Arc<Self>, request: Request) {
-        let shared = Arc::clone(self);
-        self.pages.fetch_add(1, Ordering::Relaxed);
-        self.was_watched.store(true, Ordering::Relaxed);
-        std::thread::spawn(move || {
-            let mut page = request.into_writer();
-            let _ = shared.tell_to(&mut *page);
-            shared.pages.fetch_sub(1, Ordering::Relaxed);
-        });
-    }
-
     fn tell_to(&self, page: &mut dyn Write) -> std::io::Result<()> {
-        write!(
-            page,
-            "HTTP/1.1 200 OK\r\nContent-Type: text/event-stream\r\nCache-Control: no-store\r\nConnection: close\r\n\r\n"
-        )?;
         let (mut last, mut quiet) = (String::new(), Instant::now());
         while !self.ends.load(Ordering::Relaxed) {
             let news = self.news();
