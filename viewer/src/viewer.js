@@ -107,7 +107,17 @@ export class Viewer {
     asked.push(colour === 'type' || colour === 'id' ? undefined : this.source.bytes(`values/${frame}/${colour}`));
     asked.push(field === 'none' ? undefined : this.source.bytes(`field/${frame}/${field}`));
     lines.forEach((kind) => asked.push(kind === 'links' ? undefined : this.source.bytes(`lines/${frame}/${kind}`)));
-    const [atoms, values, levels, ...found] = await Promise.all(asked);
+    let answers;
+    try {
+      answers = await Promise.all(asked);
+      this.say('');
+    } catch (error) {
+      // A damaged result, or a program that has ended: what is seen stays.
+      this.say(error.message, true);
+      this.transport?.pause();
+      return;
+    }
+    const [atoms, values, levels, ...found] = answers;
     // Whoever goes on meanwhile sees the later one.
     if (turn !== this.turn || !atoms) return;
     this.cells.show(frameOf(atoms));
