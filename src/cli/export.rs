@@ -34,6 +34,9 @@ pub fn run(args: &ExportArgs) -> Result<Report> {
     if let (None, Some(path)) = (&args.output, args.pml.as_ref().or(args.lml.as_ref())) {
         What::Model.refuse_unused(args, path)?;
     }
+    if let (None, None, None, Some(page)) = (&args.output, &args.pml, &args.lml, &args.html) {
+        What::refuse_for_page(args, page)?;
+    }
     let result = ResultFile::open(&args.result)?;
     let named = [&args.output, &args.html, &args.pml, &args.lml].map(Option::as_deref);
     let named: Vec<&Path> = named.into_iter().flatten().collect();

@@ -46,9 +46,13 @@ impl Shown {
         }
         match AtomQuantity::named(name) {
             Some(quantity) if quantity.is_in(result)? => Ok(Self::Atoms(quantity)),
-            Some(_) => {
-                let fault = Fault::new(format!("{} holds no forces on atoms", result.path().display()));
-                let help = "run the experiment with output.forces = true, or colour by something else";
+            Some(quantity) => {
+                let (what, key) = match quantity {
+                    AtomQuantity::Traction => ("tractions of", "tractions"),
+                    _ => ("forces on", "forces"),
+                };
+                let fault = Fault::new(format!("{} holds no {what} atoms", result.path().display()));
+                let help = format!("run the experiment with output.{key} = true, or colour by something else");
                 Err(Error::input(fault.help(help)))
             }
             None => {

@@ -7,7 +7,7 @@ use crate::analysis::recording::Recording;
 use crate::error::Result;
 use crate::experiment::{Document, Plot, PlotKind};
 use crate::output::ResultFile;
-use crate::picture::chart::{Axis, Chart, Scale, Series, Stroke, to_svg};
+use crate::picture::chart::{Axis, Chart, Scale, Series, Stroke, colours, to_svg};
 use crate::picture::plots::chart_of;
 
 /// Size of the drawings.
@@ -69,27 +69,27 @@ fn axis(axis: &Axis) -> Value {
 
 fn series(chart: &Chart) -> Vec<Value> {
     // JSON has no NaN: what is no number is null, and a line is broken there.
-    let known = chart.series.iter().map(|series| match series {
-        Series::Line { label, points, colour, stroke, width } => json!({
+    let known = chart.series.iter().zip(colours(chart)).map(|(series, colour)| match series {
+        Series::Line { label, points, stroke, width, .. } => json!({
             "kind": "line",
             "label": label,
             "points": points,
-            "colour": colour.map(|colour| colour.hex()),
+            "colour": colour.hex(),
             "dashed": *stroke != Stroke::Solid,
             "width": width,
         }),
-        Series::Points { label, points, bars, colour, .. } => json!({
+        Series::Points { label, points, bars, .. } => json!({
             "kind": "points",
             "label": label,
             "points": points,
             "bars": bars,
-            "colour": colour.map(|colour| colour.hex()),
+            "colour": colour.hex(),
         }),
-        Series::Band { label, points, colour } => json!({
+        Series::Band { label, points, .. } => json!({
             "kind": "band",
             "label": label,
             "points": points,
-            "colour": colour.map(|colour| colour.hex()),
+            "colour": colour.hex(),
         }),
         Series::Areas { label, .. } | Series::Tracks { label, .. } => json!({ "kind": "none", "label": label }),
     });

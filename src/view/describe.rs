@@ -69,7 +69,7 @@ pub fn scene(result: &ResultFile, document: &Document) -> Result<Value> {
             "from": picture.view.from,
             "up": picture.view.up,
         },
-        "maps": { "values": map(ColourMap::Viridis), "field": map(ColourMap::Ink), "signed": map(ColourMap::Coolwarm) },
+        "maps": { "values": map(ColourMap::Viridis), "field": map(ColourMap::Ink) },
     }))
 }
 

@@ -126,7 +126,6 @@ struct Asked {
     once: Vec<String>,
     each: Vec<[String; 2]>,
     quantities: Vec<String>,
-    fields: Vec<String>,
 }
 
 impl Asked {
@@ -164,7 +163,7 @@ impl Asked {
         each.extend(fields.iter().map(|name| ["field".to_owned(), format!("/{name}")]));
         let kinds = about["lines"].as_array().into_iter().flatten().filter_map(Value::as_str);
         each.extend(kinds.map(|kind| ["lines".to_owned(), format!("/{kind}")]));
-        Self { once, each, quantities, fields }
+        Self { once, each, quantities }
     }
 
     /// What the page is told of the scene, with no more quantities than there are in the film.
@@ -174,7 +173,6 @@ impl Asked {
                 one["name"].as_str().is_some_and(|name| self.quantities.iter().any(|known| known == name))
             });
         }
-        debug_assert!(self.fields.len() <= self.each.len());
         about
     }
 }

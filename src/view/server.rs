@@ -37,7 +37,6 @@ struct Shared {
     known: Mutex<Option<Known>>,
     /// Pages that are told of changes.
     pages: AtomicUsize,
-    was_watched: AtomicBool,
     ends: AtomicBool,
 }
 
@@ -85,7 +84,6 @@ impl Server {
             live,
             known: Mutex::new(None),
             pages: AtomicUsize::new(0),
-            was_watched: AtomicBool::new(false),
             ends: AtomicBool::new(false),
         });
         let serving = Arc::clone(&shared);
@@ -101,11 +99,6 @@ impl Server {
     /// Pages that are open now.
     pub fn pages(&self) -> usize {
         self.shared.pages.load(Ordering::Relaxed)
-    }
-
-    /// Whether a page was ever open.
-    pub fn was_watched(&self) -> bool {
-        self.shared.was_watched.load(Ordering::Relaxed)
     }
 }
 
@@ -135,7 +128,6 @@ impl Answers for Shared {
     /// Tells a page what is new for as long as it listens, as server-sent events.
     fn tell(&self, page: &mut dyn Write) -> std::io::Result<()> {
         self.pages.fetch_add(1, Ordering::Relaxed);
-        self.was_watched.store(true, Ordering::Relaxed);
         let told = self.tell_to(page);
         self.pages.fetch_sub(1, Ordering::Relaxed);
         told

@@ -132,6 +132,7 @@ fn the_server_answers_this_machine_alone() {
     let folder = tempfile::tempdir().unwrap();
     let server = Server::start(&example::write(folder.path(), ""), 0, None).unwrap();
     let address = server.address();
+    assert!(address.starts_with("http://127.0.0.1:"), "no other machine can ask: {address}");
     let status = |request: &str, headers: &str| answer(address, request, headers)[9..12].to_owned();
     assert_eq!(status("GET ", ""), "200");
     assert_eq!(status("GET data/course", ""), "200");

@@ -107,7 +107,6 @@ uniform sampler2D map;
 uniform vec4 cut;      // normal and how far along it what is drawn ends
 uniform float opacity;
 uniform int chosen;
-uniform bool edges;
 in vec3 world;
 in vec3 bent;
 in float number;
@@ -185,7 +184,7 @@ export class Cells {
       atoms: { value: null }, numbers: { value: null }, map: { value: null },
       low: { value: new THREE.Vector3() }, sides: { value: new THREE.Vector3(1, 1, 1) },
       shows: { value: 0 }, ends: { value: new THREE.Vector2(0, 1) }, cut: { value: new THREE.Vector4(0, 0, 0, 1e30) },
-      opacity: { value: 1 }, chosen: { value: -1 }, edges: { value: false },
+      opacity: { value: 1 }, chosen: { value: -1 },
       light: { value: new THREE.Vector3(0, 0, 1) }, sky: { value: new THREE.Vector3(0, 0, 1) },
     };
     this.shared = shared;

@@ -1,8 +1,7 @@
 // Charts: the document's, and those of what one clicks; a cursor shows the frame in all of them.
 
-import { short, ticks, unitOf } from './words.js';
+import { short, ticks } from './words.js';
 
-const PALETTE = ['#0072b2', '#d55e00', '#009e73', '#e69f00', '#cc79a7', '#56b4e9', '#7a828e', '#b8a800'];
 const MARGIN = { left: 54, right: 10, top: 8, bottom: 34 };
 
 /** A colour as it can be seen on the ground of the page: those that are dark on white are light on black. */
@@ -151,14 +150,12 @@ export class Chart {
 
   /** Draws all series; returns what the cursor says, in words. */
   series(context, px, py, number) {
-    let next = 0;
     let told = '';
     let lines = 0;
     this.legends = [];
     for (const series of this.about.series) {
       const isFaint = series.kind === 'line' && series.width < 1;
-      const colour = seen(series.colour ?? PALETTE[next % PALETTE.length]);
-      if (!series.colour) next += 1;
+      const colour = seen(series.colour);
       context.strokeStyle = colour;
       context.fillStyle = colour;
       if (series.label) this.legends.push([series.label, colour, series.kind]);
@@ -239,8 +236,6 @@ export class Chart {
 export function curveChart({ name, label, values }, times, title) {
   return {
     name, title: title ?? '', cursor: 'time', x: { label: 'time (s)', log: false }, y: { label, log: false },
-    series: [{ kind: 'line', label: '', width: 2, points: values.map((value, frame) => [times[frame], value]) }],
+    series: [{ kind: 'line', label: '', width: 2, colour: '#0072b2', points: values.map((value, frame) => [times[frame], value]) }],
   };
 }
-
-export { unitOf };

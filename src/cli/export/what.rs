@@ -60,6 +60,29 @@ impl What {
         Ok(what)
     }
 
+    /// A page has all frames, cells and fields: options that choose some say nothing about it.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for such an option.
+    pub fn refuse_for_page(args: &ExportArgs, page: &Path) -> Result<()> {
+        let unused = match () {
+            () if args.frame.frame.is_some() => "--frame",
+            () if args.frame.time.is_some() => "--time",
+            () if args.every.is_some() => "--every",
+            () if args.cell.is_some() => "--cell",
+            () if args.table.is_some() => "--table",
+            () if !args.series.is_empty() => "--series",
+            () if args.field.is_some() => "--field",
+            () => return Ok(()),
+        };
+        let fault = Fault::new(format!("{unused} has no meaning for {}", page.display()));
+        Err(Error::input(
+            fault.help(
+                "a page has all cells and fields, and as many frames as --size lets it have: leave the option out",
+            ),
+        ))
+    }
+
     /// Options that say nothing about what is written are a mistake that the user wants to know of.
     ///
     /// # Errors

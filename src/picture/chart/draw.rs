@@ -117,7 +117,7 @@ fn compose(chart: &Chart, width: f64, height: f64, page: Page) -> (String, Frame
 
 /// The colour of every series: its own, or the next of the palette; series of one name share one, so that a measured
 /// set and its band match.
-fn colours(chart: &Chart) -> Vec<Colour> {
+pub fn colours(chart: &Chart) -> Vec<Colour> {
     let mut next = 0;
     let mut named: Vec<(&str, Colour)> = Vec::new();
     chart

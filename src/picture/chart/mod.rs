@@ -22,7 +22,7 @@ use super::image::write_file;
 use super::svg::svg_to_pixels;
 use crate::error::Result;
 
-pub use draw::to_svg;
+pub use draw::{colours, to_svg};
 pub use heat::{Heat, Shading};
 pub use stacked::save_stacked;
 
