@@ -236,11 +236,14 @@ describe('who is answered', { timeout: 60_000 }, () => {
   });
 });
 
+/** Steps so short that the fastest machine is at them for longer than a page takes to open. */
+const LONG = ['--set', 'run.integrator.max_step="0.01 s"'];
+
 test('a run that goes on is watched, paused, let go on and stopped', { timeout: 120_000 }, async () => {
   const path = files.file('live.h5');
   // Cells that stay where they can be seen.
   const slow = ['left', 'right'].flatMap((name) => ['--set', `cells.${name}.motility.brownian.speed="0.05 um/min"`]);
-  const server = await serve('run', files.file('two.toml'), '-o', path, '--no-pictures', '--view', '--set', 'run.until="20 h"', '--set', 'output.every="60 s"', ...slow);
+  const server = await serve('run', files.file('two.toml'), '-o', path, '--no-pictures', '--view', '--set', 'run.until="20 h"', '--set', 'output.every="60 s"', ...LONG, ...slow);
   const page = await openPage(browser, server.address);
   await page.waitForFunction(() => /Running: t = /.test(document.getElementById('progress').textContent), null, { timeout: 30_000 });
   // What is seen is where the run is, between frames.
@@ -267,14 +270,19 @@ test('a run that goes on is watched, paused, let go on and stopped', { timeout: 
 
 test('a run to its end: its page stays until it is closed, and its bits are those of one that nobody watched', { timeout: 120_000 }, async () => {
   const path = files.file('watched.h5');
-  const server = await serve('run', files.file('two.toml'), '-o', path, '--no-pictures', '--view', '--set', 'run.until="60 s"');
+  const alone = files.file('alone.h5');
+  assert.equal((await run('run', files.file('two.toml'), '-o', alone, '--no-pictures', '--quiet', ...LONG)).code, 0);
+  const server = await serve('run', files.file('two.toml'), '-o', path, '--no-pictures', '--view', ...LONG);
+  // It waits until the page is open, however fast it is.
+  assert.equal((await fetch(`${server.address}pause`, { method: 'POST' })).status, 200);
   const page = await openPage(browser, server.address);
+  await page.getByRole('button', { name: 'Let the run go on' }).click();
   await page.getByText('The run has ended').waitFor({ timeout: 60_000 });
   await page.waitForFunction(() => window.pseudopod.frames === 31 && window.pseudopod.drawn.frame === 30, null, { timeout: 20_000 });
   await page.context().close();
   const { code } = await server.ended;
   assert.equal(code, 0);
-  const tables = await Promise.all([path, result].map(async (file, k) => {
+  const tables = await Promise.all([path, alone].map(async (file, k) => {
     const table = files.file(`series${k}.csv`);
     assert.equal((await run('export', file, '-o', table)).code, 0);
     return readFile(table, 'utf8');
