@@ -18,6 +18,7 @@ pub mod new;
 pub mod own_fault;
 pub mod plot;
 pub mod progress;
+pub mod reference;
 pub mod render;
 pub mod report;
 pub mod resume;
@@ -80,6 +81,8 @@ pub enum Command {
     Fit(fit::FitArgs),
     /// Prints the JSON schema of experiment documents.
     Schema(schema::SchemaArgs),
+    /// Prints a page of the reference: every key, element or option.
+    Reference(reference::ReferenceArgs),
 }
 
 impl Command {
@@ -102,6 +105,7 @@ impl Command {
             Self::Sweep(args) => args.command.manner(),
             Self::Fit(args) => ("fit", args.json),
             Self::Schema(_) => ("schema", false),
+            Self::Reference(_) => ("reference", false),
         };
         (name, if json { Form::Json } else { Form::Words })
     }
@@ -148,5 +152,6 @@ fn act(command: Command, name: &str, form: Form) -> Result<Report> {
         Command::Sweep(args) => sweep::run(&args),
         Command::Fit(args) => fit::run(&args),
         Command::Schema(args) => schema::run(&args),
+        Command::Reference(args) => reference::run(&args),
     }
 }

@@ -3,7 +3,7 @@
 use super::files::{Named, refuse_existing};
 use super::report::Report;
 use crate::error::{Error, Result};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Prints the JSON schema of the experiment document, for editors.
 #[derive(Debug, Clone, clap::Args)]
@@ -47,8 +47,16 @@ pub fn run(args: &SchemaArgs) -> Result<Report> {
         SchemaArgs { fit: true, .. } => fit_text(),
         _ => text(),
     };
-    let Some(path) = &args.output else { return Ok(Report { words, ..Report::default() }) };
-    refuse_existing(path, args.force, Named::ByUser)?;
+    printed(words, args.output.as_deref(), args.force)
+}
+
+/// What a command prints, or writes to a file that the user names.
+///
+/// # Errors
+/// The file exists or cannot be written.
+pub(super) fn printed(words: String, output: Option<&Path>, force: bool) -> Result<Report> {
+    let Some(path) = output else { return Ok(Report { words, ..Report::default() }) };
+    refuse_existing(path, force, Named::ByUser)?;
     std::fs::write(path, words).map_err(|error| Error::Machine {
         message: format!("{} cannot be written: {error}", path.display()),
         help: "name a file in a folder that exists and that you may write to with -o".into(),

@@ -219,8 +219,9 @@ fn the_schema_has_the_elements_and_attributes_of_the_reader() {
     let mut known: Vec<String> = eml::ELEMENTS
         .iter()
         .map(|kind| {
-            let required = kind.required.iter().map(|name| format!("{name}!"));
-            let mut words: Vec<String> = required.chain(kind.optional.iter().map(|name| (*name).to_owned())).collect();
+            let required = kind.required.iter().map(|(name, _)| format!("{name}!"));
+            let mut words: Vec<String> =
+                required.chain(kind.optional.iter().map(|(name, _)| (*name).to_owned())).collect();
             words.sort();
             let mut children = kind.children.to_vec();
             children.sort_unstable();

@@ -11,6 +11,7 @@ mod named_files;
 mod physical_models;
 mod population;
 mod random_scenes;
+mod reference;
 mod shipped;
 mod start;
 mod studies;

@@ -165,6 +165,20 @@ pub enum Scheme {
     Bdf,
 }
 
+impl Scheme {
+    /// What it is, for the book.
+    pub fn meaning(self) -> &'static str {
+        match self {
+            Self::Rk45 => "An explicit method of Runge and Kutta of order 5 that finds its step.",
+            Self::Rk65 => "The same of order 6, for tight tolerances.",
+            Self::Rosenbrock => "A method of Rosenbrock for stiff systems that finds its step.",
+            Self::Bdf => "Backward differentiation formulae of variable order, for long runs of one stiff system.",
+            Self::Rk4 => "The classical method of order 4 with a fixed `inner_step`.",
+            Self::Euler => "Explicit steps of order 1 with a fixed `inner_step`.",
+        }
+    }
+}
+
 /// The grid of a document's fields.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GridDescription {

@@ -46,7 +46,7 @@ pub use membrane::reached;
 pub use parts::FieldEvent;
 pub use reads::{Reads, reads};
 pub use solver::SCHEMES;
-pub use vocabulary::{ELEMENTS, Kind};
+pub use vocabulary::{Attribute, ELEMENTS, Kind};
 pub use write::{Written, numbers_are_plain, write};
 pub use xml::{DEEPEST_ELEMENT, LARGEST_DOCUMENT, MOST_ATTRIBUTES, MOST_NODES};
 

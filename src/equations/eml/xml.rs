@@ -240,7 +240,7 @@ fn attributes(
     kind: &'static Kind,
     at: &Range<usize>,
 ) -> Vec<(&'static str, Text)> {
-    let known = || kind.required.iter().chain(kind.optional).copied();
+    let known = || kind.attributes();
     let mut found = Vec::new();
     for attribute in node.attributes().iter().filter(|attribute| attribute.namespace.is_none()) {
         let value = attribute.value_at();
@@ -257,7 +257,7 @@ fn attributes(
             }
         }
     }
-    for name in kind.required.iter().filter(|name| found.iter().all(|(known, _)| known != *name)) {
+    for (name, _) in kind.required.iter().filter(|(name, _)| found.iter().all(|(known, _)| known != name)) {
         let message = match (kind.name, *name) {
             ("variable", "initial") => "the variable has no initial value".to_owned(),
             ("input", "default") => "the input has no default: the value that stands until one is given".to_owned(),

@@ -50,57 +50,78 @@ pub(super) struct Known {
     pub(super) units: UnitRule,
     /// How it is written, for messages and for the book.
     pub(super) example: &'static str,
+    /// What its value is, in Markdown, for the book.
+    about: &'static str,
 }
 
-const fn one(name: &'static str, function: Unary, units: UnitRule, example: &'static str) -> Known {
-    Known { name, meaning: Meaning::One(function), units, example }
+const fn one(
+    name: &'static str,
+    function: Unary,
+    units: UnitRule,
+    example: &'static str,
+    about: &'static str,
+) -> Known {
+    Known { name, meaning: Meaning::One(function), units, example, about }
 }
 
-const fn two(name: &'static str, function: Binary, units: UnitRule, example: &'static str) -> Known {
-    Known { name, meaning: Meaning::Two(function), units, example }
+const fn two(
+    name: &'static str,
+    function: Binary,
+    units: UnitRule,
+    example: &'static str,
+    about: &'static str,
+) -> Known {
+    Known { name, meaning: Meaning::Two(function), units, example, about }
 }
 
 /// All functions.
 #[rustfmt::skip] // a table
 pub(super) const FUNCTIONS: [Known; 36] = [
-    one("exp", Unary::Exp, UnitRule::Plain, "exp(x)"),
-    one("ln", Unary::Ln, UnitRule::Plain, "ln(x)"),
-    Known { name: "log", meaning: Meaning::Log, units: UnitRule::Plain, example: "log(x) or log(base, x)" },
-    one("log10", Unary::Log10, UnitRule::Plain, "log10(x)"),
-    two("pow", Binary::Pow, UnitRule::Power, "pow(x, exponent)"),
-    one("sqrt", Unary::Sqrt, UnitRule::Root, "sqrt(x)"),
-    one("abs", Unary::Abs, UnitRule::Same, "abs(x)"),
-    one("sign", Unary::Sign, UnitRule::Any, "sign(x)"),
-    one("floor", Unary::Floor, UnitRule::Same, "floor(x)"),
-    one("ceil", Unary::Ceil, UnitRule::Same, "ceil(x)"),
-    one("sin", Unary::Sin, UnitRule::OfAngle, "sin(x)"),
-    one("cos", Unary::Cos, UnitRule::OfAngle, "cos(x)"),
-    one("tan", Unary::Tan, UnitRule::OfAngle, "tan(x)"),
-    one("asin", Unary::Asin, UnitRule::Plain, "asin(x)"),
-    one("acos", Unary::Acos, UnitRule::Plain, "acos(x)"),
-    one("atan", Unary::Atan, UnitRule::Plain, "atan(x)"),
-    one("sinh", Unary::Sinh, UnitRule::Plain, "sinh(x)"),
-    one("cosh", Unary::Cosh, UnitRule::Plain, "cosh(x)"),
-    one("tanh", Unary::Tanh, UnitRule::Plain, "tanh(x)"),
-    one("asinh", Unary::Asinh, UnitRule::Plain, "asinh(x)"),
-    one("acosh", Unary::Acosh, UnitRule::Plain, "acosh(x)"),
-    one("atanh", Unary::Atanh, UnitRule::Plain, "atanh(x)"),
-    one("heaviside", Unary::Heaviside, UnitRule::Any, "heaviside(x)"),
-    one("factorial", Unary::Factorial, UnitRule::Plain, "factorial(n)"),
-    Known { name: "min", meaning: Meaning::Many(Binary::Min), units: UnitRule::Same, example: "min(a, b, …)" },
-    Known { name: "max", meaning: Meaning::Many(Binary::Max), units: UnitRule::Same, example: "max(a, b, …)" },
-    two("rem", Binary::Rem, UnitRule::Same, "rem(a, b)"),
-    two("quotient", Binary::Quotient, UnitRule::Quotient, "quotient(a, b)"),
+    one("exp", Unary::Exp, UnitRule::Plain, "exp(x)", "The exponential."),
+    one("ln", Unary::Ln, UnitRule::Plain, "ln(x)", "The natural logarithm."),
+    Known { name: "log", meaning: Meaning::Log, units: UnitRule::Plain, example: "log(x) or log(base, x)",
+        about: "The natural logarithm, or that to a base." },
+    one("log10", Unary::Log10, UnitRule::Plain, "log10(x)", "The logarithm to the base 10."),
+    two("pow", Binary::Pow, UnitRule::Power, "pow(x, exponent)", "A power, as `x^exponent`."),
+    one("sqrt", Unary::Sqrt, UnitRule::Root, "sqrt(x)", "The square root."),
+    one("abs", Unary::Abs, UnitRule::Same, "abs(x)", "The absolute value."),
+    one("sign", Unary::Sign, UnitRule::Any, "sign(x)", "1, 0 or -1."),
+    one("floor", Unary::Floor, UnitRule::Same, "floor(x)", "The largest whole number that is not above it."),
+    one("ceil", Unary::Ceil, UnitRule::Same, "ceil(x)", "The smallest whole number that is not below it."),
+    one("sin", Unary::Sin, UnitRule::OfAngle, "sin(x)", "The sine."),
+    one("cos", Unary::Cos, UnitRule::OfAngle, "cos(x)", "The cosine."),
+    one("tan", Unary::Tan, UnitRule::OfAngle, "tan(x)", "The tangent."),
+    one("asin", Unary::Asin, UnitRule::Plain, "asin(x)", "The angle with this sine."),
+    one("acos", Unary::Acos, UnitRule::Plain, "acos(x)", "The angle with this cosine."),
+    one("atan", Unary::Atan, UnitRule::Plain, "atan(x)", "The angle with this tangent."),
+    one("sinh", Unary::Sinh, UnitRule::Plain, "sinh(x)", "The hyperbolic sine."),
+    one("cosh", Unary::Cosh, UnitRule::Plain, "cosh(x)", "The hyperbolic cosine."),
+    one("tanh", Unary::Tanh, UnitRule::Plain, "tanh(x)", "The hyperbolic tangent."),
+    one("asinh", Unary::Asinh, UnitRule::Plain, "asinh(x)", "The inverse of `sinh`."),
+    one("acosh", Unary::Acosh, UnitRule::Plain, "acosh(x)", "The inverse of `cosh`."),
+    one("atanh", Unary::Atanh, UnitRule::Plain, "atanh(x)", "The inverse of `tanh`."),
+    one("heaviside", Unary::Heaviside, UnitRule::Any, "heaviside(x)", "0 below zero, else 1."),
+    one("factorial", Unary::Factorial, UnitRule::Plain, "factorial(n)", "The factorial of the nearest whole number; infinite above 170."),
+    Known { name: "min", meaning: Meaning::Many(Binary::Min), units: UnitRule::Same, example: "min(a, b, …)",
+        about: "The smallest, of up to 100." },
+    Known { name: "max", meaning: Meaning::Many(Binary::Max), units: UnitRule::Same, example: "max(a, b, …)",
+        about: "The largest, of up to 100." },
+    two("rem", Binary::Rem, UnitRule::Same, "rem(a, b)", "What is left of a divided by b, with the sign of a."),
+    two("quotient", Binary::Quotient, UnitRule::Quotient, "quotient(a, b)", "The largest whole number that is not above a/b."),
     Known { name: "piecewise", meaning: Meaning::Piecewise, units: UnitRule::Piecewise,
-        example: "piecewise(value, condition, …, otherwise)" },
-    Known { name: "hill", meaning: Meaning::Hill, units: UnitRule::Hill, example: "hill(x, K, n)" },
-    Known { name: "delay", meaning: Meaning::Delay, units: UnitRule::Delay, example: "delay(x, tau)" },
-    Known { name: "pulse", meaning: Meaning::Pulse, units: UnitRule::Times, example: "pulse(start, duration, period)" },
+        example: "piecewise(value, condition, …, otherwise)",
+        about: "The value before the first condition that holds." },
+    Known { name: "hill", meaning: Meaning::Hill, units: UnitRule::Hill, example: "hill(x, K, n)",
+        about: "x^n/(K^n + x^n)." },
+    Known { name: "delay", meaning: Meaning::Delay, units: UnitRule::Delay, example: "delay(x, tau)",
+        about: "What x was the time tau ago: [delays](eml.md#delays)." },
+    Known { name: "pulse", meaning: Meaning::Pulse, units: UnitRule::Times, example: "pulse(start, duration, period)",
+        about: "1 from the start for the duration, again after each period if there is one, else 0: [schedules](eml.md#schedules)." },
     // Other spellings of the same.
-    one("ceiling", Unary::Ceil, UnitRule::Same, "ceiling(x)"),
-    one("arcsin", Unary::Asin, UnitRule::Plain, "arcsin(x)"),
-    one("arccos", Unary::Acos, UnitRule::Plain, "arccos(x)"),
-    one("arctan", Unary::Atan, UnitRule::Plain, "arctan(x)"),
+    one("ceiling", Unary::Ceil, UnitRule::Same, "ceiling(x)", "As `ceil`."),
+    one("arcsin", Unary::Asin, UnitRule::Plain, "arcsin(x)", "As `asin`."),
+    one("arccos", Unary::Acos, UnitRule::Plain, "arccos(x)", "As `acos`."),
+    one("arctan", Unary::Atan, UnitRule::Plain, "arctan(x)", "As `atan`."),
 ];
 
 /// Functions whose names identifiers may have as well, since documents had them before there was the function.
@@ -127,6 +148,11 @@ pub fn is_reserved(word: &str) -> bool {
 /// Whether a word can be an identifier: letters, digits and `_`, not beginning with a digit.
 pub fn is_identifier(word: &str) -> bool {
     word.starts_with(super::token::begins_name) && word.chars().all(super::token::continues_name)
+}
+
+/// How all built-in functions are written, and what they are, in Markdown, for the book.
+pub fn functions_in_words() -> impl Iterator<Item = (&'static str, &'static str)> {
+    FUNCTIONS.iter().map(|function| (function.example, function.about))
 }
 
 /// Names of all built-in functions, for the book.

@@ -13,7 +13,7 @@ mod unit;
 mod units;
 mod write;
 
-pub use functions::{function_names, is_identifier, is_reserved};
+pub use functions::{function_names, functions_in_words, is_identifier, is_reserved};
 pub use parse::parse;
 pub use resolve::{Function, LARGEST, Scope, Spent};
 pub use syntax::{DEEPEST, LONGEST, Node, NodeKind, is_constant};
