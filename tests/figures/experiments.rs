@@ -71,7 +71,7 @@ const SHOWN: [(&str, &str, &str); 42] = [
 ];
 
 /// How far the colours of two pictures of one size are apart, in levels of 255; round-off may move an edge by a pixel here and there.
-fn mean_difference(one: &Path, other: &Path) -> f64 {
+pub(super) fn mean_difference(one: &Path, other: &Path) -> f64 {
     let pixels = |path: &Path| {
         let file = std::io::BufReader::new(std::fs::File::open(path).unwrap());
         let mut reader = png::Decoder::new(file).read_info().unwrap();

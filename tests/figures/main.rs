@@ -9,3 +9,4 @@ mod index_table;
 mod shared;
 mod sorting_statistics;
 mod truth_cube;
+mod tutorials;
