@@ -43,7 +43,7 @@ impl ChartLook {
         let log = self.log.as_deref().unwrap_or_default();
         if is_map && !log.is_empty() {
             let fault = Fault::new(format!("--log {log}: {name} is a map, whose axes are linear"));
-            return Err(Error::input(fault.help("curves, points and histograms may have logarithmic axes")));
+            return Err(Error::input(fault.help("curves, points and histograms may have logarithmic axes, and a kymograph logarithmic colours (--log-colours)")));
         }
         let axes = [('x', &mut chart.x, self.x_range, &self.x_label), ('y', &mut chart.y, self.y_range, &self.y_label)];
         for (letter, axis, range, label) in axes {

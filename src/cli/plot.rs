@@ -71,6 +71,9 @@ pub struct PlotArgs {
     /// The numbers at the ends of a kymograph's colour bar; those of the field when absent.
     #[arg(long, value_name = "LOW,HIGH", requires = "kymograph", value_parser = super::render::ends, allow_hyphen_values = true)]
     pub range: Option<[f64; 2]>,
+    /// Colours of a kymograph that count in powers of ten, for a field over decades.
+    #[arg(long, requires = "kymograph")]
+    pub log_colours: bool,
     /// The type of cells that is shown; what the chart says, or all, when absent.
     #[arg(long, value_name = "TYPE")]
     pub cells: Option<String>,
@@ -209,7 +212,7 @@ fn wanted(args: &PlotArgs, known: &[Plot]) -> Result<Vec<Plot>> {
         return Ok(vec![own(&file("profile", field), PlotKind::Profile { line: line(field), times })]);
     }
     if let Some(field) = &args.kymograph {
-        let kind = PlotKind::Kymograph { line: line(field), range: args.range };
+        let kind = PlotKind::Kymograph { line: line(field), range: args.range, log: args.log_colours };
         return Ok(vec![own(&file("kymograph", field), kind)]);
     }
     if args.along.is_some() || args.through.is_some() {

@@ -5,7 +5,7 @@ use super::frames::FrameArgs;
 use super::report::Report;
 use super::show::ShowArgs;
 use crate::error::{Error, Fault, Result};
-use crate::experiment::When;
+use crate::experiment::{OneOrMany, When};
 use crate::output::ResultFile;
 use crate::picture::Movie;
 use crate::picture::from_file::{beside, check_colour, check_field, cut_out, film_as, still_as};
@@ -20,7 +20,7 @@ const PIXELS: std::ops::RangeInclusive<i64> = 16..=16_384;
 pub struct RenderArgs {
     /// The result file.
     pub result: PathBuf,
-    /// A .png for one instant; .gif, .mp4, .webm or a folder for all frames. By default a .png beside the result.
+    /// A .png for one instant; .gif, .apng, .mp4, .webm, or a folder (no ending) for all frames. By default a .png beside the result.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// Which frame.
@@ -39,6 +39,9 @@ pub struct RenderArgs {
     /// The numbers at the ends of the field's colour bar; those of the frames when absent.
     #[arg(long, value_name = "LOW,HIGH", value_parser = ends, allow_hyphen_values = true)]
     pub field_range: Option<[f64; 2]>,
+    /// Lets the field's colours count in powers of ten, for one over decades.
+    #[arg(long)]
+    pub field_log: bool,
     /// The height at which a field of the medium is cut, in um; the mean height of the cells when absent.
     #[arg(long, value_name = "Z", value_parser = finite, allow_hyphen_values = true)]
     pub field_height: Option<f64>,
@@ -51,6 +54,12 @@ pub struct RenderArgs {
     /// Leaves out the fibres that were made at run time, and cells are solid.
     #[arg(long)]
     pub no_fibres: bool,
+    /// Shows the dynamic links between cells, from centre to centre, and cells are seen through.
+    #[arg(long)]
+    pub links: bool,
+    /// Types of cells that are painted in two tones, so that they are seen to turn, by commas; where colours show types.
+    #[arg(long, value_delimiter = ',', value_name = "TYPE")]
+    pub marks: Vec<String>,
     /// How it is shown.
     #[command(flatten)]
     pub show: ShowArgs,
@@ -83,10 +92,21 @@ pub fn run(args: &RenderArgs) -> Result<Report> {
     picture.colour_range = args.range.or(picture.colour_range);
     args.field.iter().for_each(|field| picture.field = Some(field.clone()));
     picture.field_range = args.field_range.or(picture.field_range);
+    picture.field_log |= args.field_log;
     picture.field_height = args.field_height.map(Length::new).or(picture.field_height);
     picture.cut = args.cut.map(Length::new).or(picture.cut);
     picture.loads |= args.loads;
     picture.fibres &= !args.no_fibres;
+    picture.links |= args.links;
+    if !args.marks.is_empty() {
+        picture.marks = Some(OneOrMany::Many(args.marks.clone()));
+    }
+    if args.links && !result.layout().linked {
+        let fault = Fault::new(format!("--links: no dynamic links are in {}", args.result.display()));
+        return Err(Error::input(fault.help(
+            "links between cells come from [contact] with model = \"links\"; links within cells are always shown",
+        )));
+    }
     picture.width = args.width.unwrap_or(picture.width);
     picture.height = args.height.unwrap_or(picture.height);
     picture.view = args.show.view()?.unwrap_or(picture.view);

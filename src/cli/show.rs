@@ -50,6 +50,9 @@ pub struct ShowArgs {
     /// Leaves out the time.
     #[arg(long)]
     pub no_time: bool,
+    /// Leaves out which way x, y and z go.
+    #[arg(long)]
+    pub no_axes: bool,
     /// What is written beside the colour bar of the cells; the quantity and its unit when absent.
     #[arg(long, value_name = "TEXT")]
     pub label: Option<String>,
@@ -98,6 +101,7 @@ impl ShowArgs {
             hidden: types.iter().filter(|name| is_hidden(name)).cloned().collect(),
             scale_bar: !self.no_scale_bar,
             time: !self.no_time,
+            axes: !self.no_axes,
             edges: self.edges,
         })
     }

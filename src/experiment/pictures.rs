@@ -28,6 +28,8 @@ pub struct Picture {
     /// The ends of the field's scale of colours, in the field's unit; chosen when absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub field_range: Option<[f64; 2]>,
+    /// Whether the field's colours count in powers of ten, for one over decades.
+    pub field_log: bool,
     /// The height at which a field of the medium is cut; the mean height of the cells when absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub field_height: Option<Length>,
@@ -39,6 +41,13 @@ pub struct Picture {
     pub loads: bool,
     /// Shows the fibres that were made at run time as lines inside the cells, the thicker the more they pull.
     pub fibres: bool,
+    /// Shows the dynamic links between cells as lines from centre to centre, the thicker the more there are between two cells, which are seen through.
+    pub links: bool,
+    /// Types of cells that are painted in two tones, by the eighths of the space around them in the first frame, so that they are seen to turn;
+    /// where colours show types.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-text" = "cell type"))]
+    pub marks: Option<OneOrMany<String>>,
     /// Where the picture is taken from.
     pub view: View,
     /// Width in pixels.
@@ -58,10 +67,13 @@ impl Default for Picture {
             colour_range: None,
             field: None,
             field_range: None,
+            field_log: false,
             field_height: None,
             cut: None,
             loads: false,
             fibres: true,
+            links: false,
+            marks: None,
             view: View::default(),
             width,
             height,
@@ -193,6 +205,9 @@ pub enum PlotKind {
         /// The ends of the scale of colours, in the field's unit; chosen when absent.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         range: Option<[f64; 2]>,
+        /// Whether colours count in powers of ten, for a field over decades.
+        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+        log: bool,
     },
 }
 

@@ -106,11 +106,13 @@ pub enum List {
     OnPlanes,
     /// Fibres that were made at run time and are there.
     Fibres,
+    /// Pairs of cells that dynamic links join.
+    Links,
 }
 
 impl List {
     /// All lists, each at its number.
-    pub const ALL: [Self; 5] = [Self::Runs, Self::Pseudopods, Self::Pairs, Self::OnPlanes, Self::Fibres];
+    pub const ALL: [Self; 6] = [Self::Runs, Self::Pseudopods, Self::Pairs, Self::OnPlanes, Self::Fibres, Self::Links];
 
     /// Rows of a frame.
     pub fn rows(self, frame: &Frame) -> usize {
@@ -120,6 +122,7 @@ impl List {
             Self::Pairs => frame.pairs.len(),
             Self::OnPlanes => frame.on_planes.len(),
             Self::Fibres => frame.fibres.len(),
+            Self::Links => frame.links.len(),
         }
     }
 
@@ -131,6 +134,7 @@ impl List {
             Self::Pairs => "/contacts/pair_count",
             Self::OnPlanes => "/contacts/plane_count",
             Self::Fibres => "/fibres/count",
+            Self::Links => "/links/pair_count",
         }
     }
 
@@ -142,6 +146,7 @@ impl List {
             Self::Pairs => "/contacts/pairs/area",
             Self::OnPlanes => "/contacts/planes/area",
             Self::Fibres => "/fibres/tension",
+            Self::Links => "/links/number",
         }
     }
 }
@@ -161,7 +166,7 @@ use Filled::{
     Population as PerPopulation, RowFloat, RowInteger, Shared as Block,
 };
 
-/// All datasets, in the order in which they are made, except those of [`cell_entries`], [`CONTACT`], [`FORCE`], [`TRACTION`] and [`FIBRE`].
+/// All datasets, in the order in which they are made, except those of [`cell_entries`], [`CONTACT`], [`FORCE`], [`TRACTION`], [`FIBRE`] and [`LINK`].
 #[rustfmt::skip]
 pub const CATALOGUE: &[Entry] = &[
     // The animated surface, in the layout that VTK calls VTKHDF PolyData 2.0.
@@ -270,6 +275,15 @@ pub const FIBRE: &[Entry] = &[
     row("/fibres/tension", "pN", "fibre", RowFloat(List::Fibres, |f, i| f.fibres[i].tension), "What the fibre pulls with: stiffness times activation in the last step times length."),
 ];
 
+/// The datasets of dynamic links, which exist in a run whose contacts make some.
+#[rustfmt::skip]
+pub const LINK: &[Entry] = &[
+    row("/links/pair_count", "1", "frame", Counter(|i| i.rows[List::Links as usize] as i64), "Rows of the other datasets of links up to the end of a frame."),
+    row("/links/first", "1", "linked pair", RowInteger(List::Links, |f, i| f.links[i].cell.cast_signed()), "Of two cells that are linked the smaller id."),
+    row("/links/second", "1", "linked pair", RowInteger(List::Links, |f, i| f.links[i].other.cast_signed()), "The other."),
+    row("/links/number", "1", "linked pair", RowInteger(List::Links, |f, i| i64::from(f.links[i].number)), "Links between facets of the two, each of three springs."),
+];
+
 /// The datasets of the forces, which exist when the first frame carries forces.
 #[rustfmt::skip]
 pub const FORCE: &[Entry] = &[
@@ -310,8 +324,14 @@ pub fn cell_entries(with: OnDemand) -> impl Iterator<Item = Entry> {
 /// # Panics
 /// If the catalogue has no such row: a mistake in this module.
 pub fn entry(path: &str) -> &'static Entry {
-    let found =
-        CATALOGUE.iter().chain(CONTACT).chain(FORCE).chain(TRACTION).chain(FIBRE).find(|entry| entry.path == path);
+    let found = CATALOGUE
+        .iter()
+        .chain(CONTACT)
+        .chain(FORCE)
+        .chain(TRACTION)
+        .chain(FIBRE)
+        .chain(LINK)
+        .find(|entry| entry.path == path);
     found.unwrap_or_else(|| panic!("{path} is missing from the catalogue of the result file"))
 }
 
@@ -322,8 +342,15 @@ mod tests {
     #[test]
     fn every_path_is_listed_once_and_links_lead_somewhere() {
         let cells: Vec<Entry> = cell_entries(OnDemand::ALL).collect();
-        let all: Vec<&Entry> =
-            CATALOGUE.iter().chain(&cells).chain(CONTACT).chain(FORCE).chain(TRACTION).chain(FIBRE).collect();
+        let all: Vec<&Entry> = CATALOGUE
+            .iter()
+            .chain(&cells)
+            .chain(CONTACT)
+            .chain(FORCE)
+            .chain(TRACTION)
+            .chain(FIBRE)
+            .chain(LINK)
+            .collect();
         for (number, entry) in all.iter().enumerate() {
             assert!(!all[..number].iter().any(|other| other.path == entry.path), "{} is listed twice", entry.path);
             if let Link(target) = entry.filled {

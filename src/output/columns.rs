@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use hdf5::File;
 
-use super::catalogue::{CATALOGUE, CONTACT, Entry, FIBRE, FORCE, Filled, Instant, List, TRACTION, cell_entries};
+use super::catalogue::{CATALOGUE, CONTACT, Entry, FIBRE, FORCE, Filled, Instant, LINK, List, TRACTION, cell_entries};
 use super::cell_column::{CellColumn, CellSource};
 use super::column::{Column, Number, Numbers, PackedColumn, Plan, SMALL_ROWS, push_frames};
 use super::container::set_number;
@@ -103,7 +103,8 @@ impl Columns {
         let contacts = if self.layout.contacts { CONTACT } else { &[] };
         let tractions = if self.layout.tractions { TRACTION } else { &[] };
         let fibres = if self.layout.fibres { FIBRE } else { &[] };
-        for entry in CATALOGUE.iter().chain(contacts).chain(tractions).chain(fibres) {
+        let links = if self.layout.linked { LINK } else { &[] };
+        for entry in CATALOGUE.iter().chain(contacts).chain(tractions).chain(fibres).chain(links) {
             self.add(file, entry, start)?;
         }
         cell_entries(self.layout.on_demand()).try_for_each(|entry| self.add(file, &entry, start))?;

@@ -4,11 +4,11 @@ use std::collections::HashSet;
 
 use ndarray::ArrayView1;
 
-use super::ResultFile;
 use super::catalogue::List;
 use super::changes::counts_of_changes;
 use super::contacts::{self, Touching};
 use super::container::damaged;
+use super::{LinkedPair, ResultFile};
 use crate::error::{Error, Fault, Result};
 
 impl ResultFile {
@@ -32,6 +32,36 @@ impl ResultFile {
     /// If there is no such frame.
     pub fn on_planes(&self, frame: usize) -> Result<Vec<Touching>> {
         self.touching(List::OnPlanes, frame, ["/contacts/planes/cell", "/contacts/planes/plane"])
+    }
+
+    /// Pairs of cells that dynamic links join in a frame, ascending; none in a run without such links.
+    ///
+    /// # Errors
+    /// A damaged file.
+    ///
+    /// # Panics
+    /// If there is no such frame.
+    pub fn linked(&self, frame: usize) -> Result<Vec<LinkedPair>> {
+        assert!(frame < self.frames(), "frame {frame} of {}", self.frames());
+        if !self.layout().linked {
+            return Ok(Vec::new());
+        }
+        let rows = self.rows_of(List::Links, frame..frame + 1)?;
+        let integers =
+            |name: &str| self.read(&format!("/links/{name}"), |data| data.read_slice_1d::<i64, _>(rows.clone()));
+        let [first, second, number] = [integers("first")?, integers("second")?, integers("number")?];
+        let id = |number: i64| u64::try_from(number).unwrap_or(u64::MAX);
+        let pair = |row: usize| LinkedPair {
+            cell: id(first[row]),
+            other: id(second[row]),
+            number: u32::try_from(number[row]).unwrap_or(0),
+        };
+        let found: Vec<LinkedPair> = (0..first.len()).map(pair).collect();
+        let ids: HashSet<u64> = self.cells(frame).iter().map(|cell| cell.id).collect();
+        match found.iter().all(|pair| ids.contains(&pair.cell) && ids.contains(&pair.other)) {
+            true => Ok(found),
+            false => Err(damaged(self.path(), "/links/first names no cell")),
+        }
     }
 
     fn touching(&self, list: List, frame: usize, names: [&str; 2]) -> Result<Vec<Touching>> {

@@ -22,6 +22,9 @@ pub(super) fn misfit(layout: &Layout, forces: bool, frame: &Frame) -> Option<Str
     if !layout.fibres && !frame.fibres.is_empty() {
         return Some("fibres of a frame must fit the layout".into());
     }
+    if !layout.linked && !frame.links.is_empty() {
+        return Some("links of a frame must fit the layout".into());
+    }
     let sizes = frame.membranes.iter().map(Vec::len);
     if !sizes.eq(layout.membranes.iter().map(|_| atoms)) {
         return Some("substances on membranes of a frame must fit the layout".into());

@@ -24,7 +24,7 @@ use crate::error::{Error, Fault, Result};
 /// First bytes of a log.
 const MAGIC: &[u8; 8] = b"PSEUDLOG";
 /// Version of the frames in it.
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 /// Length and checksum before a block.
 const BLOCK_HEAD: usize = 12;
 /// How long another program that reads or ends with the result is waited for.

@@ -163,6 +163,7 @@ pub(super) fn read_layout(file: &File) -> hdf5::Result<Layout> {
         contacts: file.link_exists("contacts"),
         tractions: file.dataset(TRACTION[0].path).is_ok(),
         fibres: file.link_exists("fibres"),
+        linked: file.link_exists("links"),
         viscosity: file.dataset(VISCOUS[0].dataset).is_ok(),
     })
 }

@@ -101,6 +101,8 @@ pub struct Layout {
     pub tractions: bool,
     /// Whether fibres may be made at run time, so that those that are there are recorded.
     pub fibres: bool,
+    /// Whether dynamic links may join cells, so that those that they join are recorded.
+    pub linked: bool,
     /// Whether some cells are viscous, so that what that takes is recorded.
     pub viscosity: bool,
 }
@@ -159,6 +161,17 @@ pub struct FibreRow {
     pub tension: f64,
 }
 
+/// Two cells that dynamic links join.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct LinkedPair {
+    /// Id of a cell; of the two the smaller one.
+    pub cell: u64,
+    /// Id of the other.
+    pub other: u64,
+    /// Links between facets of the two.
+    pub number: u32,
+}
+
 /// A pseudopod whose protrusion ended.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct PseudopodEvent {
@@ -209,6 +222,8 @@ pub struct Frame {
     pub pseudopods: Vec<PseudopodEvent>,
     /// Fibres that were made at run time and are there, cell after cell.
     pub fibres: Vec<FibreRow>,
+    /// Pairs of cells that dynamic links join, the smaller id first, in ascending order.
+    pub links: Vec<LinkedPair>,
     /// Pairs of cells that touch, the smaller id first, in ascending order.
     pub pairs: Vec<Touching>,
     /// Cells that touch planes, in ascending order of cell, then plane.

@@ -11,7 +11,7 @@ use hdf5::plist::dataset_create::Layout as Storage;
 use hdf5::types::TypeDescriptor;
 use hdf5::{Dataset, File, Group, LinkType, LocationType};
 
-use super::catalogue::{CATALOGUE, CONTACT, Entry, FIBRE, FORCE, Filled, TRACTION};
+use super::catalogue::{CATALOGUE, CONTACT, Entry, FIBRE, FORCE, Filled, LINK, TRACTION};
 use crate::recorded::{OnDemand, Values, cell_quantities};
 
 /// Groups within groups: three are needed.
@@ -170,7 +170,7 @@ fn expected(path: &str) -> Option<Expected> {
             Values::Vector(..) => (Kind::Floats, VECTORS),
         });
     }
-    let mut entries = CATALOGUE.iter().chain(CONTACT).chain(FIBRE).chain(FORCE).chain(TRACTION);
+    let mut entries = CATALOGUE.iter().chain(CONTACT).chain(FIBRE).chain(LINK).chain(FORCE).chain(TRACTION);
     if let Some(entry) = entries.find(|entry| entry.path == path) {
         return of_entry(entry);
     }

@@ -3,7 +3,7 @@
 use hdf5::{Dataset, File};
 use ndarray::s;
 
-use super::catalogue::{CAME_LATER, CATALOGUE, CONTACT, FIBRE, FORCE, Filled, List, TRACTION, cell_entries};
+use super::catalogue::{CAME_LATER, CATALOGUE, CONTACT, FIBRE, FORCE, Filled, LINK, List, TRACTION, cell_entries};
 use super::pieces::has_frames;
 use super::population::{OfShared, Part, Population, Shared};
 use super::{Cell, Layout};
@@ -127,13 +127,13 @@ pub(super) fn whole_frames(file: &File, layout: &Layout) -> hdf5::Result<usize> 
         return Ok(0);
     }
     let (mut frames, mut fields) = (usize::MAX, Vec::new());
-    for entry in CATALOGUE.iter().chain(CONTACT).chain(FIBRE) {
+    for entry in CATALOGUE.iter().chain(CONTACT).chain(FIBRE).chain(LINK) {
         if !matches!(entry.filled, Filled::Frame(_) | Filled::Counter(_) | Filled::Counters(_)) {
             continue;
         }
         match file.dataset(entry.path) {
             Ok(dataset) => frames = frames.min(dataset.get_shape()?[0]),
-            Err(_) if CONTACT.iter().chain(FIBRE).any(|optional| optional.path == entry.path) => {}
+            Err(_) if CONTACT.iter().chain(FIBRE).chain(LINK).any(|optional| optional.path == entry.path) => {}
             Err(error) => return Err(error),
         }
     }

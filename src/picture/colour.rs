@@ -1,5 +1,7 @@
 //! Colours for cells, curves and numbers, chosen so that readers with any colour vision can tell them apart.
 
+use super::ticks::Scale;
+
 /// A colour in sRGB, as screens and image files mean it: red, green, blue, 0 to 255.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Colour(pub [u8; 3]);
@@ -41,16 +43,6 @@ impl Colour {
 /// Numbers that differ by less than this share of their size are one: what is below is round-off.
 const ROUND_OFF: f64 = 1e-6;
 
-/// Where a number stands between two ends, from 0 to 1; see [`ColourMap::of_value`].
-pub(crate) fn share(value: f64, [low, high]: [f64; 2]) -> f64 {
-    match (high != low, low == 0.0) {
-        _ if value.is_nan() => f64::NAN,
-        (true, _) => (value - low) / (high - low),
-        (false, true) => 0.0,
-        (false, false) => 0.5,
-    }
-}
-
 /// The ends of a scale for numbers between two: one number twice where they differ by round-off alone, or by less than `least`, and
 /// from 0 to 1 where there are none.
 pub(crate) fn scale_of([low, high]: [f64; 2], least: f64) -> [f64; 2] {
@@ -63,6 +55,18 @@ pub(crate) fn scale_of([low, high]: [f64; 2], least: f64) -> [f64; 2] {
         true => [0.5 * (low + high); 2],
         false => [low, high],
     }
+}
+
+/// Decades that a logarithmic scale has at most, unless it is told its ends: what is smaller is as good as nothing.
+const DECADES: f64 = 1e6;
+
+/// The ends of a logarithmic scale for numbers above 0, the least and the largest of them.
+pub(crate) fn decades_of([least, largest]: [f64; 2]) -> [f64; 2] {
+    if !(largest > 0.0 && largest.is_finite()) {
+        return [0.1, 1.0];
+    }
+    let low = least.max(largest / DECADES);
+    if largest - low <= ROUND_OFF * largest { [largest; 2] } else { [low, largest] }
 }
 
 /// How a number becomes a colour.
@@ -100,7 +104,7 @@ impl ColourMap {
     /// The colour of a number on a scale between two ends. Where these are the same, so that there is one number, it is that of the
     /// middle of the map, or the first where the number is nothing.
     pub fn of_value(self, value: f64, ends: [f64; 2]) -> Colour {
-        self.at(share(value, ends))
+        self.at(Scale::Linear.share(value, ends))
     }
 
     /// Eleven equally spaced samples of the map (viridis and magma as published with matplotlib, coolwarm after
@@ -155,6 +159,19 @@ mod tests {
         assert_eq!(ColourMap::Viridis.of_value(2e-17, [0.0; 2]), ColourMap::Viridis.at(0.0));
         assert_eq!(scale_of([f64::INFINITY, f64::NEG_INFINITY], 0.0), [0.0, 1.0]);
         assert_eq!(ColourMap::Viridis.of_value(f64::NAN, ends), ColourMap::Viridis.at(f64::NAN));
+    }
+
+    #[test]
+    fn decades_take_equal_parts_of_a_logarithmic_scale() {
+        let ends = decades_of([1e-3, 10.0]);
+        for (value, share) in [(1e-3, 0.0), (1e-2, 0.25), (0.1, 0.5), (10.0, 1.0), (0.0, 0.0), (-5.0, 0.0)] {
+            assert!((Scale::Log.share(value, ends) - share).abs() < 1e-12, "{value}");
+        }
+        assert!(Scale::Log.share(f64::NAN, ends).is_nan());
+        // What a diffusing substance leaves far away is no reason for three hundred decades.
+        assert_eq!(decades_of([1e-300, 1.0]), [1e-6, 1.0]);
+        assert_eq!(decades_of([2.0, 2.0]), [2.0; 2]);
+        assert_eq!(decades_of([f64::INFINITY, f64::NEG_INFINITY]), [0.1, 1.0]);
     }
 
     #[test]

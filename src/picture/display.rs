@@ -17,13 +17,24 @@ pub struct Display {
     pub scale_bar: bool,
     /// Whether the time is written.
     pub time: bool,
+    /// Whether it is shown which way x, y and z go.
+    pub axes: bool,
     /// Whether the edges of facets are drawn.
     pub edges: bool,
 }
 
 impl Default for Display {
     fn default() -> Self {
-        Self { title: None, label: None, zoom: 1.0, hidden: Vec::new(), scale_bar: true, time: true, edges: false }
+        Self {
+            title: None,
+            label: None,
+            zoom: 1.0,
+            hidden: Vec::new(),
+            scale_bar: true,
+            time: true,
+            axes: true,
+            edges: false,
+        }
     }
 }
 

@@ -1,8 +1,8 @@
 //! Charts of fields: profiles along an axis at some instants, and along an axis against time.
 
-use super::chart::{Axis, Chart, Heat, Range, Series};
-use super::colour::{ColourMap, scale_of};
-use super::field_view::species_label;
+use super::chart::{Axis, Chart, Heat, Range, Scale, Series};
+use super::colour::{ColourMap, decades_of, scale_of};
+use super::field_view::{check_decades, species_label};
 use super::instant::frame_at;
 use crate::error::{Result, short};
 use crate::experiment::{Axis as Name, FieldLine, OneOrMany, When};
@@ -90,8 +90,11 @@ fn evenly(frames: usize, some: usize) -> Vec<usize> {
 /// The field along an axis against time, as colours.
 ///
 /// # Errors
-/// As [`profile`].
-pub fn kymograph(result: &ResultFile, line: &FieldLine, range: Option<[f64; 2]>) -> Result<Chart> {
+/// As [`profile`], and ends that are not above 0 on a logarithmic scale.
+pub fn kymograph(result: &ResultFile, line: &FieldLine, range: Option<[f64; 2]>, scale: Scale) -> Result<Chart> {
+    if scale == Scale::Log {
+        check_decades("the colours of the kymograph", range)?;
+    }
     let line = Line::of(result, line)?;
     let times = result.times()?;
     let mut rows = Vec::with_capacity(times.len());
@@ -114,7 +117,11 @@ pub fn kymograph(result: &ResultFile, line: &FieldLine, range: Option<[f64; 2]>)
     }
     let finite = || rows.iter().flatten().copied().filter(|value| value.is_finite());
     let (low, high) = (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
-    let found = scale_of([low, high], 0.0);
+    let least = || finite().filter(|value| *value > 0.0).fold(f64::INFINITY, f64::min);
+    let found = match scale {
+        Scale::Linear => scale_of([low, high], 0.0),
+        Scale::Log => decades_of([least(), high]),
+    };
     // A run that never got further than its first frame is shown as an instant.
     let time_ends = if end > start { [start, end] } else { [start, start + 1.0] };
     let heat = Heat {
@@ -124,6 +131,7 @@ pub fn kymograph(result: &ResultFile, line: &FieldLine, range: Option<[f64; 2]>)
         values,
         map: ColourMap::Viridis,
         range: range.unwrap_or(found),
+        scale,
         label: line.label(),
         ..Heat::default()
     };

@@ -2,7 +2,8 @@
 
 use super::colour::ColourMap;
 use super::render::Sheet;
-use crate::error::Result;
+use super::ticks::Scale;
+use crate::error::{Error, Fault, Result, short};
 use crate::experiment::Picture;
 use crate::output::{Along, FieldLayout, ResultFile};
 
@@ -19,7 +20,7 @@ impl FieldView {
     /// What a picture asks for: the field that it names, or the first one there is, or none.
     ///
     /// # Errors
-    /// [`crate::error::Error::Input`] for a field that the result does not have.
+    /// [`crate::error::Error::Input`] for a field that the result does not have, and for ends that are not above 0 on a logarithmic scale.
     pub fn of(result: &ResultFile, picture: &Picture) -> Result<Option<Self>> {
         let first = result.layout().fields.iter().find(|field| !field.species.is_empty() && !field.is_empty());
         let (field, species) = match (picture.field.as_deref(), first) {
@@ -27,6 +28,9 @@ impl FieldView {
             (Some(name), _) => result.field_species(name)?,
             (None, Some(field)) => (field, 0),
         };
+        if picture.field_log {
+            check_decades("the colours of the field", picture.field_range)?;
+        }
         Ok(Some(Self { field: field.clone(), species, height: picture.field_height.map(|height| height.value()) }))
     }
 
@@ -64,7 +68,23 @@ impl FieldView {
             values,
             map: ColourMap::default(),
             range: [0.0, 1.0],
+            scale: Scale::Linear,
         })
+    }
+}
+
+/// Makes sure that a logarithmic scale may have these ends.
+///
+/// # Errors
+/// [`Error::Input`] for one that is not above 0.
+pub fn check_decades(what: &str, range: Option<[f64; 2]>) -> Result<()> {
+    match range {
+        Some([low, high]) if !(low > 0.0 && high > 0.0) => {
+            let fault =
+                Fault::new(format!("{what} count in powers of ten, which never reach {}", short(low.min(high))));
+            Err(Error::input(fault.help("let the range begin above 0, as 0.001,1 does, or take a linear scale")))
+        }
+        _ => Ok(()),
     }
 }
 

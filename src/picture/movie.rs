@@ -1,4 +1,4 @@
-//! Strings pictures together: animated GIF, MP4 or WebM by ffmpeg, or numbered PNG files.
+//! Strings pictures together: animated GIF or PNG, MP4 or WebM by ffmpeg, or numbered PNG files.
 
 use std::fs::File;
 use std::io::{BufWriter, Read, Write};
@@ -9,8 +9,11 @@ use super::Image;
 use super::image::unwritable;
 use crate::error::{Error, Fault, Result};
 
+mod apng;
 mod gif_frames;
+mod kept;
 
+use apng::AnimatedPng;
 use gif_frames::GifFrames;
 
 /// A movie that is being written, frame by frame.
@@ -33,12 +36,15 @@ pub struct Written {
 
 enum Kind {
     Gif(GifFrames<BufWriter<File>>),
+    AnimatedPng(AnimatedPng<BufWriter<File>>),
     /// The encoder is started with the first frame, which tells the size.
     Ffmpeg {
         program: PathBuf,
         child: Option<Child>,
     },
-    /// Numbered files in a folder; the first picture waits until it is known whether it stays alone.
+    /// Numbered files in a folder.
+    Folder,
+    /// A file for one picture, else numbered files in a folder; the first picture waits until it is known whether it stays alone.
     Sequence {
         folder: PathBuf,
         waiting: Option<Image>,
@@ -46,8 +52,9 @@ enum Kind {
 }
 
 impl Movie {
-    /// Begins a movie with `fps` pictures a second at a path whose ending says the kind: `.gif`; `.mp4` or `.webm`,
-    /// which need the program ffmpeg on the PATH; `.png`, one file for one picture and a folder of numbered files for more.
+    /// Begins a movie with `fps` pictures a second at a path whose ending says the kind: `.gif` or `.apng`; `.mp4` or
+    /// `.webm`, which need the program ffmpeg on the PATH; none for a folder of numbered files; `.png`, one file for one picture and such a
+    /// folder for more. GIF and animated PNG are written once all pictures are there, which wait in memory, packed.
     ///
     /// # Errors
     /// [`Error::Machine`] without ffmpeg where it is needed. When the ending or `fps` is none of these, or the file cannot be written.
@@ -67,9 +74,12 @@ impl Movie {
         let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
         let folder = path.with_extension("");
         let kind = match (ending.as_str(), ffmpeg) {
-            ("gif", _) => {
-                let file = File::create(path).map_err(|error| unwritable(path, &error))?;
-                Kind::Gif(GifFrames::new(BufWriter::new(file)))
+            ("gif" | "apng", _) => {
+                let file = BufWriter::new(File::create(path).map_err(|error| unwritable(path, &error))?);
+                match ending.as_str() {
+                    "gif" => Kind::Gif(GifFrames::new(file)),
+                    _ => Kind::AnimatedPng(AnimatedPng::new(file)),
+                }
             }
             ("mp4" | "webm", Some(program)) => {
                 // ffmpeg's own words for a path it cannot write come late and long.
@@ -79,15 +89,16 @@ impl Movie {
             ("mp4" | "webm", None) => {
                 return Err(Error::Machine {
                     message: format!("{} cannot be made: the program ffmpeg is not there", path.display()),
-                    help: "install ffmpeg (with apt, dnf or Homebrew), or let the name end in .gif, or in .png for a folder of numbered \
+                    help: "install ffmpeg (with apt, dnf or Homebrew), or let the name end in .gif or .apng; one without an ending is a folder of numbered \
                            pictures"
                         .into(),
                 });
             }
+            ("", _) => Kind::Folder,
             ("png", _) => Kind::Sequence { folder, waiting: None },
             _ => {
                 let fault = Fault::new(format!("cannot tell from its name what kind of picture {} is", path.display()));
-                return Err(Error::input(fault.help("let the name end in .png, .gif, .mp4 or .webm")));
+                return Err(Error::input(fault.help("let the name end in .gif, .apng, .mp4 or .webm; in .png for one instant; one without an ending is a folder")));
             }
         };
         Ok(Self { path: path.into(), fps, size: None, frames: 0, kind })
@@ -108,10 +119,17 @@ impl Movie {
         self.frames += 1;
         match &mut self.kind {
             Kind::Gif(gif) => {
-                let hundredths = |frame: usize| (frame as f64 * 100.0 / self.fps).round() as u64;
                 // Viewers play delays below 2 as 10, hence the lower limit.
-                let delay = (hundredths(self.frames) - hundredths(self.frames - 1)).clamp(2, 6000) as u16;
+                let delay = delay(self.frames, self.fps, gif_frames::PER_SECOND).clamp(2, 6000);
                 gif.add(image, delay).map_err(|error| unwritable(&self.path, &error))
+            }
+            Kind::AnimatedPng(film) => {
+                let delay = delay(self.frames, self.fps, apng::PER_SECOND).max(1);
+                film.add(image, delay).map_err(|error| unwritable(&self.path, &error))
+            }
+            Kind::Folder => {
+                std::fs::create_dir_all(&self.path).map_err(|error| unwritable(&self.path, &error))?;
+                image.save_png(&self.path.join(format!("{:05}.png", self.frames)))
             }
             Kind::Ffmpeg { program, child } => {
                 if child.is_none() {
@@ -144,12 +162,20 @@ impl Movie {
         let Self { path, frames, kind, .. } = self;
         match kind {
             Kind::Gif(gif) => gif.finish().map_err(|error| unwritable(&path, &error))?,
+            Kind::AnimatedPng(film) => film.finish().map_err(|error| unwritable(&path, &error))?,
+            Kind::Folder => {}
             Kind::Ffmpeg { child, .. } => finish_ffmpeg(child, &path)?,
             Kind::Sequence { waiting: Some(only), .. } => only.save_png(&path)?,
             Kind::Sequence { folder, .. } => return Ok(Written { path: folder, frames }),
         }
         Ok(Written { path, frames })
     }
+}
+
+/// How long the frame of this number, counted from 1, stays, in parts of a second; what is rounded off it goes to the next.
+fn delay(frame: usize, fps: f64, per_second: f64) -> u16 {
+    let end = |frame: usize| (frame as f64 * per_second / fps).round() as u64;
+    u16::try_from(end(frame) - end(frame - 1)).unwrap_or(u16::MAX)
 }
 
 /// The program of that name in the folders of PATH.
@@ -172,7 +198,7 @@ fn start_ffmpeg(program: &Path, path: &Path, [width, height]: [usize; 2], fps: f
     command.arg(path).stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::piped());
     command.spawn().map_err(|error| Error::Machine {
         message: format!("cannot start {}: {error}", program.display()),
-        help: "repair the installation of ffmpeg, or ask for a .gif".into(),
+        help: "repair the installation of ffmpeg, or ask for a .gif or an .apng".into(),
     })
 }
 
@@ -190,97 +216,13 @@ fn finish_ffmpeg(child: Option<Child>, path: &Path) -> Result<()> {
             let outcome = outcome.map_or_else(|error| error.to_string(), |status| status.to_string());
             Err(Error::Machine {
                 message: format!("ffmpeg could not write {}: {outcome}; {}", path.display(), complaint.trim()),
-                help: "check that the disk is not full and that ffmpeg knows H.264 or VP9, or ask for a .gif".into(),
+                help:
+                    "check that the disk is not full and that ffmpeg knows H.264 or VP9, or ask for a .gif or an .apng"
+                        .into(),
             })
         }
     }
 }
 
 #[cfg(test)]
-pub(super) mod tests {
-    use super::*;
-    use crate::picture::Colour;
-
-    /// What a viewer of a GIF shows, frame after frame, and how long it plays (hundredths of a second).
-    pub(in crate::picture) fn played(path: &Path) -> (Vec<Image>, u32) {
-        let mut options = gif::DecodeOptions::new();
-        options.set_color_output(gif::ColorOutput::RGBA);
-        let mut decoder = options.read_info(File::open(path).unwrap()).unwrap();
-        let (width, height) = (usize::from(decoder.width()), usize::from(decoder.height()));
-        let mut screen = Image::filled(width, height, Colour([0; 3]));
-        let (mut shown, mut hundredths) = (Vec::new(), 0);
-        while let Some(frame) = decoder.read_next_frame().unwrap() {
-            hundredths += u32::from(frame.delay);
-            for (n, pixel) in frame.buffer.chunks_exact(4).enumerate().filter(|(_, pixel)| pixel[3] != 0) {
-                let (x, y) = (n % usize::from(frame.width), n / usize::from(frame.width));
-                let to = 3 * ((y + usize::from(frame.top)) * width + x + usize::from(frame.left));
-                screen.rgb[to..to + 3].copy_from_slice(&pixel[..3]);
-            }
-            shown.push(screen.clone());
-        }
-        (shown, hundredths)
-    }
-
-    fn moving_square(frame: usize) -> Image {
-        let mut image = Image::filled(64, 40, Colour([250, 250, 250]));
-        for y in 10..20 {
-            for x in 0..10 {
-                let at = 3 * (y * 64 + x + 4 * frame);
-                image.rgb[at..at + 3].copy_from_slice(&[0, 114, 178]);
-            }
-        }
-        image
-    }
-
-    #[test]
-    fn a_gif_plays_all_frames_with_their_colours() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("square.gif");
-        let mut movie = Movie::create(&path, 12.0).unwrap();
-        (0..6).for_each(|frame| movie.add(&moving_square(frame)).unwrap());
-        assert_eq!(movie.finish().unwrap(), Written { path: path.clone(), frames: 6 });
-        let (shown, hundredths) = played(&path);
-        for (frame, screen) in shown.iter().enumerate() {
-            let meant = moving_square(frame);
-            // Two colours fit a palette exactly; light dithering may move a colour to its neighbour only.
-            assert!(screen.rgb.iter().zip(&meant.rgb).all(|(a, b)| a.abs_diff(*b) <= 2), "frame {frame}");
-        }
-        assert_eq!((shown.len(), hundredths), (6, 50));
-    }
-
-    #[test]
-    fn one_png_is_a_file_and_several_are_a_folder() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("one.png");
-        let mut movie = Movie::create(&path, 10.0).unwrap();
-        movie.add(&moving_square(0)).unwrap();
-        assert_eq!(movie.finish().unwrap().path, path);
-        assert!(path.is_file());
-        let mut movie = Movie::create(&folder.path().join("two.png"), 10.0).unwrap();
-        movie.add(&moving_square(0)).unwrap();
-        movie.add(&moving_square(1)).unwrap();
-        let written = movie.finish().unwrap();
-        assert!(written.path.join("00001.png").is_file() && written.path.join("00002.png").is_file());
-    }
-
-    #[test]
-    fn without_ffmpeg_a_film_is_an_error_that_helps_and_leaves_nothing() {
-        let folder = tempfile::tempdir().unwrap();
-        let error = Movie::create_with(&folder.path().join("cells.mp4"), 10.0, None).err().expect("no film");
-        assert_eq!(error.exit_code(), 1);
-        assert!(error.to_string().contains("ffmpeg is not there"), "{error}");
-        assert_eq!(folder.path().read_dir().unwrap().count(), 0);
-    }
-
-    #[test]
-    fn what_cannot_become_a_movie_is_an_error_that_helps() {
-        assert_eq!(Movie::create(Path::new("cells.avi"), 10.0).err().unwrap().exit_code(), 2);
-        assert_eq!(Movie::create(Path::new("cells.gif"), 0.0).err().unwrap().exit_code(), 2);
-        let error = Movie::create(Path::new("/nowhere/cells.gif"), 10.0).err().unwrap();
-        assert!(error.to_string().contains("/nowhere/cells.gif"));
-        let folder = tempfile::tempdir().unwrap();
-        let mut movie = Movie::create(&folder.path().join("a.gif"), 10.0).unwrap();
-        movie.add(&moving_square(0)).unwrap();
-        assert!(movie.add(&Image::filled(3, 3, Colour([0; 3]))).is_err());
-    }
-}
+pub(super) mod tests;

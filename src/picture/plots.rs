@@ -57,7 +57,10 @@ pub fn chart_of(result: &ResultFile, document: &Document, plot: &Plot) -> Result
             track_plots::histogram(&groups(result, document, plot)?, *quantity, *bins)?
         }
         PlotKind::Profile { line, times } => field_plots::profile(result, line, times.as_ref())?,
-        PlotKind::Kymograph { line, range } => field_plots::kymograph(result, line, *range)?,
+        PlotKind::Kymograph { line, range, log } => {
+            let scale = if *log { Scale::Log } else { Scale::Linear };
+            field_plots::kymograph(result, line, *range, scale)?
+        }
     };
     let tables = plot.table.as_ref().map_or(&[][..], |tables| tables.as_slice());
     for table in tables {

@@ -4,18 +4,21 @@ use std::collections::HashMap;
 
 use super::Image;
 use super::arrows::LoadArrows;
-use super::display::Display;
+use super::display::{Display, known};
 use super::documented::{clock_of, type_colours};
 use super::field_view::FieldView;
 use super::from_result::{Framing, Look, Snapshot, Values, picture_of};
 use super::instant::frame_at;
+use super::joined::{Joint, linked};
 use super::quantities::LEAST;
 use super::render::{Edges, ScaleBar, Sheet};
 use super::shown::{Of, Shown};
+use super::ticks::Scale;
+use super::tools::gone;
 use crate::Vec3;
 use crate::error::Result;
-use crate::experiment::{Document, Picture};
-use crate::output::{Cell, FibreRow, Obstacle, ResultFile};
+use crate::experiment::{Document, OneOrMany, Picture};
+use crate::output::{Cell, FibreRow, ResultFile};
 
 /// What one frame gives to a picture.
 pub struct Shot {
@@ -25,6 +28,8 @@ pub struct Shot {
     arrows: Vec<[[f64; 3]; 2]>,
     /// Ends and tensions of fibres, where they are shown.
     fibres: Option<Vec<([[f64; 3]; 2], f64)>>,
+    /// Which cells are linked, where that is shown.
+    links: Option<Vec<Joint>>,
     field: Option<Sheet>,
     time: f64,
     /// How far obstacles have gone, µm.
@@ -40,6 +45,8 @@ pub struct Stage<'a> {
     arrows: LoadArrows,
     /// Whether fibres are shown: the run may have made some.
     fibres: bool,
+    /// Whether links between cells are shown: contacts may have made some.
+    links: bool,
     field: Option<FieldView>,
     times: Vec<f64>,
     /// When the run was to end, s.
@@ -48,6 +55,8 @@ pub struct Stage<'a> {
     types: Vec<bool>,
     /// The first cell of each type where there is one in the first frame, µm.
     rest: Vec<Vec<[f64; 3]>>,
+    /// How far each obstacle has gone in each frame, µm; nothing of what stands.
+    gone: Vec<Vec<Vec3>>,
 }
 
 impl<'a> Stage<'a> {
@@ -57,23 +66,28 @@ impl<'a> Stage<'a> {
         let types = display.shown(&result.layout().type_names())?;
         let mut look = dressed(look_of(result, document, picture, &shown), display);
         look.unnamed = (0..types.len()).filter(|kind| !types[*kind]).collect();
+        look.marked = numbers_of(&picture.marks, &result.layout().type_names())?;
         let field = FieldView::of(result, picture)?;
         look.field_range = picture.field_range;
+        look.field_scale = if picture.field_log { Scale::Log } else { Scale::Linear };
         look.field_label = field.as_ref().map_or_else(String::new, FieldView::label);
         let arrows = if picture.loads { LoadArrows::of(document)? } else { LoadArrows::default() };
         let until = document.experiment.run.until.value();
         let fibres = picture.fibres && result.layout().fibres;
+        let links = picture.links && result.layout().linked;
         Ok(Self {
             result,
             look,
             shown,
             arrows,
             fibres,
+            links,
             field,
             times: result.times()?,
             until,
             types,
             rest: first_of_types(result)?,
+            gone: result.layout().obstacles.iter().map(|obstacle| gone(result, obstacle)).collect::<Result<_>>()?,
         })
     }
 
@@ -92,9 +106,9 @@ impl<'a> Stage<'a> {
         let (cells, positions, values) = self.seen(cells, positions, values);
         let arrows = self.arrows.at(time, self.result.layout(), &cells, &positions);
         let fibres = self.fibres.then(|| self.fibres_at(frame, &cells, &positions)).transpose()?;
-        let gone = self.result.layout().obstacles.iter().map(|obstacle| self.gone(obstacle, frame));
-        let gone = gone.collect::<Result<_>>()?;
-        Ok(Shot { cells, positions, values, arrows, fibres, field, time, gone })
+        let links = self.links.then(|| linked(self.result, frame, &cells, &positions)).transpose()?;
+        let gone = self.gone.iter().map(|gone| gone.get(frame).copied().unwrap_or_else(Vec3::zeros)).collect();
+        Ok(Shot { cells, positions, values, arrows, fibres, links, field, time, gone })
     }
 
     /// What is left of a frame without the cells that are hidden.
@@ -120,16 +134,6 @@ impl<'a> Stage<'a> {
         (left, at, numbers)
     }
 
-    /// How far an obstacle has gone, µm.
-    fn gone(&self, obstacle: &Obstacle, frame: usize) -> Result<Vec3> {
-        let direction = Vec3::from(obstacle.direction);
-        if direction == Vec3::zeros() {
-            return Ok(direction);
-        }
-        let displacement = self.result.scene_series(&format!("tool_displacement.{}", obstacle.name))?;
-        Ok(displacement.get(frame).copied().unwrap_or(0.0) * direction)
-    }
-
     /// The ends and tensions of the fibres of a frame.
     fn fibres_at(&self, frame: usize, cells: &[Cell], positions: &[[f64; 3]]) -> Result<Vec<([[f64; 3]; 2], f64)>> {
         let firsts = cells.iter().zip(self.result.layout().atoms_of(cells)).map(|(cell, atoms)| (cell.id, atoms.start));
@@ -150,9 +154,9 @@ impl<'a> Stage<'a> {
         };
         let layout = self.result.layout();
         let (cells, positions, arrows, field) = (&shot.cells, &shot.positions, &shot.arrows, shot.field.as_ref());
-        let fibres = shot.fibres.as_deref();
+        let (fibres, links) = (shot.fibres.as_deref(), shot.links.as_deref());
         let (rest, gone) = (&self.rest, &shot.gone);
-        Snapshot { layout, cells, positions, time: shot.time, values, arrows, fibres, field, rest, gone }
+        Snapshot { layout, cells, positions, time: shot.time, values, arrows, fibres, links, field, rest, gone }
     }
 
     /// The picture of the instant that is asked for, alone.
@@ -199,6 +203,16 @@ fn first_of_types(result: &ResultFile) -> Result<Vec<Vec<[f64; 3]>>> {
     Ok(rest)
 }
 
+/// The numbers of types by their names.
+///
+/// # Errors
+/// [`crate::error::Error::Input`] for one that is none of them.
+fn numbers_of(names: &Option<OneOrMany<String>>, types: &[String]) -> Result<Vec<usize>> {
+    let names = names.as_ref().map_or(&[][..], OneOrMany::as_slice);
+    names.iter().try_for_each(|name| known(name, types))?;
+    Ok((0..types.len()).filter(|kind| names.contains(&types[*kind])).collect())
+}
+
 /// A look with what a person wants of it.
 fn dressed(look: Look, display: &Display) -> Look {
     Look {
@@ -207,6 +221,7 @@ fn dressed(look: Look, display: &Display) -> Look {
         zoom: display.zoom,
         scale_bar: if display.scale_bar { look.scale_bar } else { ScaleBar::Hidden },
         time: display.time,
+        axes: display.axes,
         edges: if display.edges { Edges::Thin } else { look.edges },
         ..look
     }

@@ -15,6 +15,39 @@ pub struct Ticks {
     pub exponent: i32,
 }
 
+/// How values are spaced along an axis, or along a scale of colours.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Scale {
+    /// Equal differences take equal lengths.
+    #[default]
+    Linear,
+    /// Equal ratios take equal lengths.
+    Log,
+}
+
+impl Scale {
+    /// Where a value stands between two ends, from 0 to 1: beyond them what is beyond. Where the ends are the same, so that there is one
+    /// value, it is in the middle, or 0 where it is nothing. On a logarithmic scale what is not above 0 is at its lower end.
+    pub fn share(self, value: f64, [low, high]: [f64; 2]) -> f64 {
+        match (self, high != low) {
+            _ if value.is_nan() => f64::NAN,
+            (Self::Linear, true) => (value - low) / (high - low),
+            (Self::Log, true) if value <= 0.0 => 0.0,
+            (Self::Log, true) => (value / low).ln() / (high / low).ln(),
+            (_, false) if low == 0.0 => 0.0,
+            (_, false) => 0.5,
+        }
+    }
+
+    /// Marks of a scale that ends where it ends, for about `most` labels.
+    pub(crate) fn marks(self, low: f64, high: f64, most: usize) -> Ticks {
+        match self {
+            Self::Linear => linear(low, high, most, Ends::Exact),
+            Self::Log => logarithmic(low, high, most, Ends::Exact),
+        }
+    }
+}
+
 /// The smallest of 1, 2, 5 times a power of ten that is not below `value`, which must be positive.
 pub fn nice_above(value: f64) -> f64 {
     let decade = 10f64.powf(value.log10().floor());

@@ -1,11 +1,12 @@
-//! Tools in pictures: their profiles, turned about their axes, as of glass.
+//! Tools in pictures: how far they have gone, and their profiles, turned about their axes, as of glass.
 
 use std::f64::consts::PI;
 
 use super::Colour;
 use super::render::{Scene, Surface, SurfaceColour};
 use crate::Vec3;
-use crate::output::Obstacle;
+use crate::error::Result;
+use crate::output::{Obstacle, ResultFile};
 
 /// Parts that a tool is divided into around its axis.
 const AROUND: usize = 96;
@@ -43,6 +44,19 @@ pub fn add_tool(scene: &mut Scene, tool: &Obstacle, gone: Vec3) {
         }
     }
     scene.surfaces.push(surface);
+}
+
+/// How far an obstacle has gone in each frame, µm; nothing of what stands.
+///
+/// # Errors
+/// A damaged file.
+pub fn gone(result: &ResultFile, obstacle: &Obstacle) -> Result<Vec<Vec3>> {
+    let direction = Vec3::from(obstacle.direction);
+    if direction == Vec3::zeros() {
+        return Ok(Vec::new());
+    }
+    let displacement = result.scene_series(&format!("tool_displacement.{}", obstacle.name))?;
+    Ok(displacement.iter().map(|by| *by * direction).collect())
 }
 
 /// The sides of a profile from point to point; one more where neither end is on the axis.

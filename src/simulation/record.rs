@@ -10,7 +10,7 @@ use crate::output::{
     Cell, CellRecord, CellType, FibreRow, FieldLayout, Frame, Layout, MembraneLayout, PseudopodEvent, SystemLayout,
     SystemScope,
 };
-use crate::recorded::{FibresRecord, OUT_OF_BALANCE, TractionRecord, contact_quantities, names_by_type};
+use crate::recorded::{FibresRecord, OUT_OF_BALANCE, Recorded, TractionRecord, contact_quantities, names_by_type};
 use crate::sim::chemistry::{Members, member_cells};
 use crate::sim::contact::find_contacts;
 use crate::sim::kind::Kind;
@@ -44,6 +44,7 @@ pub fn outline_of(model: &Model) -> Layout {
     layout.contacts = model.contact.is_some();
     layout.tractions = model.keeps_tractions;
     layout.fibres = model.kinds.iter().any(|kind| kind.fibre_budget > 0);
+    layout.linked = model.contact.as_ref().is_some_and(|contact| contact.law.series() == Recorded::WithLinks);
     layout.viscosity = model.kinds.iter().any(|kind| kind.viscosity.is_some());
     let of_contacts = model.contact.iter().flat_map(|contact| contact_quantities(contact.law.series()));
     layout.scene_series.extend(of_contacts.map(|row| (row.name.to_owned(), row.unit.to_owned())));

@@ -3,7 +3,7 @@
 
 use crate::Vec3;
 use crate::contact::{Contacts, Detector, Scene};
-use crate::output::{Frame, Touching, clusters};
+use crate::output::{Frame, LinkedPair, Touching, clusters};
 use crate::recorded::{ContactSeries, contact_quantities};
 use crate::sim::contact::{AreaScratch, CohesionScratch, ContactScene, Earlier, LinkScratch, Touching as Instant};
 use crate::sim::{Model, State, Workspace};
@@ -65,7 +65,18 @@ impl Touch {
         let now = Instant { scene: &contact.scene, controls: &state.chemistry.controls, found, positions };
         // Where links bind, cells that merely touch do not belong together.
         let first = match contact.law.links_at(now, &state.contact, links) {
-            Some(at) => clusters(bodies, at.links.iter().map(|link| link.bodies)),
+            Some(at) => {
+                let pairs = at.links.iter().map(|link| link.bodies.map(|body| frame.cells[body as usize].id));
+                let mut pairs: Vec<[u64; 2]> = pairs.map(|[one, other]| [one.min(other), one.max(other)]).collect();
+                pairs.sort_unstable();
+                let alike = pairs.chunk_by(|one, other| one == other);
+                frame.links.extend(alike.map(|alike| LinkedPair {
+                    cell: alike[0][0],
+                    other: alike[0][1],
+                    number: alike.len() as u32,
+                }));
+                clusters(bodies, at.links.iter().map(|link| link.bodies))
+            }
             None => {
                 clusters(bodies, self.areas.iter().filter(|area| area.1 < bodies as u32).map(|area| [area.0, area.1]))
             }

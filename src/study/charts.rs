@@ -170,6 +170,7 @@ fn map(data: &Data, x: &Column, y: &Column) -> Chart {
         range,
         label: told,
         shading: Shading::Boxes,
+        ..Heat::default()
     };
     let name = |cell: &str| cell.parse().map_or_else(|_| cell.to_owned(), rounded_text);
     Chart {

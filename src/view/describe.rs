@@ -11,8 +11,9 @@ use crate::picture::ColourMap;
 use crate::picture::documented::{clock_of, type_colours};
 use crate::picture::field_view::species_label;
 use crate::picture::plots::label_of;
-use crate::picture::render::ClockUnit;
+use crate::picture::render::{AXES, ClockUnit};
 use crate::picture::shown::{Of, Shown};
+use crate::picture::tools::gone;
 
 /// Parts of a scale of colours.
 const COLOURS: usize = 64;
@@ -34,6 +35,7 @@ pub fn scene(result: &ResultFile, document: &Document) -> Result<Value> {
         );
     let mut lines = Vec::new();
     lines.extend(layout.fibres.then_some("fibres"));
+    lines.extend(layout.linked.then_some("linked"));
     lines.extend(layout.contacts.then_some("contacts"));
     lines.extend(layout.tractions.then_some("traction"));
     let has_loads = document.experiment.cells.values().any(|cell| !cell.applied.loads.is_empty());
@@ -64,11 +66,15 @@ pub fn scene(result: &ResultFile, document: &Document) -> Result<Value> {
             "range": picture.colour_range,
             "field": picture.field,
             "field_range": picture.field_range,
+            "field_log": picture.field_log,
             "fibres": picture.fibres,
+            "links": picture.links,
+            "marks": picture.marks,
             "loads": picture.loads,
             "from": picture.view.from,
             "up": picture.view.up,
         },
+        "axes": AXES.map(|(name, colour)| json!({ "name": name, "colour": colour.hex() })),
         "maps": { "values": map(ColourMap::Viridis), "field": map(ColourMap::Ink) },
     }))
 }
@@ -118,22 +124,16 @@ fn map(map: ColourMap) -> Vec<[u8; 3]> {
 /// A damaged file.
 pub fn course(result: &ResultFile) -> Result<Value> {
     let ending = result.ending();
+    // Null of what stands.
+    let told = |gone: Vec<Vec3>| {
+        let each: Vec<[f64; 3]> = gone.into_iter().map(Into::into).collect();
+        if each.is_empty() { Value::Null } else { json!(each) }
+    };
     let obstacles = result.layout().obstacles.iter();
     Ok(json!({
         "times": result.times()?,
-        "gone": obstacles.map(|obstacle| gone(result, obstacle)).collect::<Result<Vec<_>>>()?,
+        "gone": obstacles.map(|obstacle| gone(result, obstacle).map(told)).collect::<Result<Vec<_>>>()?,
         "finished": ending.finished,
         "running": ending.running,
     }))
-}
-
-/// How far an obstacle has gone in each frame, µm; null of what stands.
-fn gone(result: &ResultFile, obstacle: &Obstacle) -> Result<Value> {
-    let direction = Vec3::from(obstacle.direction);
-    if direction == Vec3::zeros() {
-        return Ok(Value::Null);
-    }
-    let displacement = result.scene_series(&format!("tool_displacement.{}", obstacle.name))?;
-    let each = displacement.iter().map(|by| <[f64; 3]>::from(*by * direction));
-    Ok(json!(each.collect::<Vec<_>>()))
 }

@@ -13,6 +13,7 @@ use crate::error::Result;
 use crate::experiment::Document;
 use crate::output::ResultFile;
 use crate::picture::arrows::LoadArrows;
+use crate::picture::joined;
 use crate::picture::plots::label_of;
 use crate::picture::shown::{Of, Shown};
 
@@ -170,7 +171,7 @@ impl Scene {
         Ok(Some(ends))
     }
 
-    /// Fibres (with what they pull, pN), contacts from centre to centre (with their areas, µm²), tractions (pN) or loads.
+    /// Fibres (with what they pull, pN), contacts from centre to centre (with their areas, µm²), cells that are linked (with their links), tractions (pN) or loads.
     fn lines(&self, result: &ResultFile, kind: &str, frame: usize) -> Result<Option<Vec<u8>>> {
         let layout = result.layout();
         let (cells, positions) = (result.cells(frame), result.positions(frame)?);
@@ -181,17 +182,8 @@ impl Scene {
                 let ends = |cell, atoms: [u32; 2]| atoms.map(|atom| positions[firsts[&cell] + atom as usize]);
                 result.fibres(frame)?.into_iter().map(|row| (ends(row.cell, row.atoms), row.tension)).collect()
             }
-            "contacts" if layout.contacts => {
-                let centre = |atoms: std::ops::Range<usize>| {
-                    let (sum, count) =
-                        (positions[atoms.clone()].iter().map(|at| Vec3::from(*at)).sum::<Vec3>(), atoms.len());
-                    <[f64; 3]>::from(sum / count.max(1) as f64)
-                };
-                let centres = cells.iter().zip(layout.atoms_of(&cells)).map(|(cell, atoms)| (cell.id, centre(atoms)));
-                let centres: HashMap<u64, [f64; 3]> = centres.collect();
-                let pairs = result.pairs(frame)?;
-                pairs.iter().map(|pair| ([centres[&pair.cell], centres[&pair.other]], pair.area)).collect()
-            }
+            "contacts" if layout.contacts => joined::touching(result, frame, &cells, &positions)?,
+            "linked" if layout.linked => joined::linked(result, frame, &cells, &positions)?,
             "traction" => match result.tractions(frame)? {
                 Some(all) => {
                     let strongest = self.range(result, "traction")?.map_or(0.0, |ends| ends[1]);

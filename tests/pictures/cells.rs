@@ -145,7 +145,7 @@ fn a_zoom_of_two_shows_everything_twice_as_large() {
     let folder = tempfile::tempdir().unwrap();
     let (file, document) = result(folder.path(), "");
     let picture = Picture { width: 320, height: 180, ..Picture::default() };
-    let bare = Display { title: Some(String::new()), scale_bar: false, time: false, ..Display::default() };
+    let bare = Display { title: Some(String::new()), scale_bar: false, time: false, axes: false, ..Display::default() };
     let blue = |zoom: f64| {
         let display = Display { zoom, hidden: vec!["stiff".into()], ..bare.clone() };
         blue_and_red(&still_as(&file, &document, &picture, &display).unwrap())[0] as f64
@@ -159,7 +159,7 @@ fn a_cut_out_has_nothing_behind_the_cells_and_no_words_that_are_left_out() {
     let folder = tempfile::tempdir().unwrap();
     let (file, document) = result(folder.path(), "");
     let picture = Picture { width: 320, height: 180, ..Picture::default() };
-    let bare = Display { title: Some(String::new()), scale_bar: false, time: false, ..Display::default() };
+    let bare = Display { title: Some(String::new()), scale_bar: false, time: false, axes: false, ..Display::default() };
     let cut = |display: &Display| cut_out(&file, &document, &picture, display).unwrap();
     let opacity = |cut: &pseudopod::picture::image::CutOut, x: usize, y: usize| cut.rgba[4 * (320 * y + x) + 3];
     let [plain, worded] = [cut(&bare), cut(&Display::default())];

@@ -1,9 +1,10 @@
 //! Fields in pictures.
 
-use pseudopod::experiment::{Document, Picture, When};
+use pseudopod::experiment::{Axis, Document, FieldLine, Picture, When};
 use pseudopod::output::ResultFile;
+use pseudopod::picture::field_plots::kymograph;
 use pseudopod::picture::from_file::{check_field, still};
-use pseudopod::picture::{ColourMap, Image};
+use pseudopod::picture::{ColourMap, Image, Scale};
 use pseudopod::units::{Length, Time};
 use std::path::Path;
 
@@ -71,6 +72,36 @@ fn a_field_that_is_not_there_is_told() {
     let (result, _) = opened(folder.path());
     let text = |name: &str| check_field(&result, &from_above(name)).unwrap_err().to_string();
     assert!(text("atractant").contains("has no field `atractant`"), "{}", text("atractant"));
+}
+
+#[test]
+fn colours_that_count_in_powers_of_ten_show_what_linear_ones_do_not() {
+    let folder = tempfile::tempdir().unwrap();
+    let (result, document) = opened(folder.path());
+    let picture = Picture { field_range: None, field_log: true, ..from_above("attractant") };
+    let image = still(&result, &document, &picture).unwrap();
+    let linear = still(&result, &document, &Picture { field_log: false, ..picture.clone() }).unwrap();
+    // The front fades to some 10⁻⁵ of its height: there a linear scale has its first colour, decades do not.
+    let first = ColourMap::Ink.at(0.0).0;
+    assert!(2 * count(&image, first) < count(&linear, first), "{} {}", count(&image, first), count(&linear, first));
+    // 0.1 is in the middle of three decades below 1 and more.
+    let ranged = Picture { field_range: Some([1e-2, 1.0]), ..picture.clone() };
+    check_field(&result, &ranged).unwrap();
+    let text = check_field(&result, &Picture { field_range: Some([0.0, 1.0]), ..picture }).unwrap_err().to_string();
+    assert!(text.contains("never reach 0"), "{text}");
+}
+
+#[test]
+fn a_kymograph_may_count_in_powers_of_ten() {
+    let folder = tempfile::tempdir().unwrap();
+    let (result, _) = opened(folder.path());
+    let line = FieldLine { field: Some("attractant".into()), along: Axis::X, through: None };
+    let heat = |range, scale| kymograph(&result, &line, range, scale).map(|chart| chart.heat.unwrap());
+    let found = heat(None, Scale::Log).unwrap();
+    let least = found.values.iter().copied().filter(|value| *value > 0.0).fold(f64::INFINITY, f64::min);
+    assert!(found.range[0] > 0.0 && found.range[0] <= least * 1.01 && found.scale == Scale::Log, "{:?}", found.range);
+    assert!(heat(Some([-1.0, 1.0]), Scale::Linear).is_ok());
+    assert!(heat(Some([-1.0, 1.0]), Scale::Log).unwrap_err().to_string().contains("powers of ten"));
 }
 
 #[test]

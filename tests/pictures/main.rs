@@ -3,6 +3,7 @@
 mod cells;
 mod example;
 mod fields;
+mod linked;
 mod plots;
 mod populations;
 #[cfg(feature = "view")]

@@ -18,6 +18,8 @@ uniform usampler2D rings;
 uniform usampler2D cornersOf;
 uniform sampler2D numbers;
 uniform vec3 low, sides;
+uniform sampler2D restOf; // where atoms lie at rest from the middle of the cell, of types that are marked
+uniform bool isMarked;
 uniform int shows; // 0 types, 1 a number a cell, 2 a number an atom
 #ifdef SHADOW
 uniform vec3 ground, floor_, fall;
@@ -29,13 +31,14 @@ in vec2 owner;   // first atom, number of the cell
 out vec3 world;
 out vec3 bent;
 out float number;
+out vec3 mark;
 flat out int cell;
 
 ivec2 at(int index) { return ivec2(index & ${WIDE - 1}, index >> 11); }
 vec3 where_(int atom) { return low + sides * (vec3(texelFetch(atoms, at(atom), 0).xyz) / 65535.0); }
 
 // The position of a corner, its normal, and its number.
-void look(float corner, int first, out vec3 here, out vec3 normal, out float found) {
+void look(float corner, int first, out vec3 here, out vec3 normal, out float found, out vec3 own) {
   uvec3 c = texelFetch(cornersOf, at(int(corner)), 0).xyz; // atom, start of its ring, neighbours
   int atom = first + int(c.x), start = int(c.y), end = start + int(c.z);
   here = where_(atom);
@@ -48,22 +51,24 @@ void look(float corner, int first, out vec3 here, out vec3 normal, out float fou
   }
   normal = normalize(normal);
   found = shows == 2 ? texelFetch(numbers, at(atom), 0).x : 0.0;
+  own = isMarked ? texelFetch(restOf, at(int(c.x)), 0).xyz : vec3(1.0);
 }
 
 void main() {
   int first = int(owner.x);
   cell = int(owner.y);
-  vec3 p[3], n[3];
+  vec3 p[3], n[3], m[3];
   float f[3];
-  look(corners.x, first, p[0], n[0], f[0]);
+  look(corners.x, first, p[0], n[0], f[0], m[0]);
   world = p[0];
   bent = n[0];
   number = f[0];
+  mark = m[0];
   if (weights.x > 0.0 || weights.y > 0.0) {
     float[3] w = float[3](1.0 - weights.x - weights.y, weights.x, weights.y);
-    look(corners.y, first, p[1], n[1], f[1]);
-    if (w[2] > 0.0) look(corners.z, first, p[2], n[2], f[2]);
-    else { p[2] = p[1]; n[2] = n[1]; f[2] = f[1]; }
+    look(corners.y, first, p[1], n[1], f[1], m[1]);
+    if (w[2] > 0.0) look(corners.z, first, p[2], n[2], f[2], m[2]);
+    else { p[2] = p[1]; n[2] = n[1]; f[2] = f[1]; m[2] = m[1]; }
     vec3 flat_ = w[0] * p[0] + w[1] * p[1] + w[2] * p[2];
     // Phong tessellation (Boubekeur and Alexa 2008): drawn to the tangent planes of the corners, through which it goes.
     vec3 lifted = vec3(0.0);
@@ -71,6 +76,7 @@ void main() {
     world = weights.z > 0.5 ? mix(flat_, lifted, 0.75) : flat_;
     bent = w[0] * n[0] + w[1] * n[1] + w[2] * n[2];
     number = w[0] * f[0] + w[1] * f[1] + w[2] * f[2];
+    mark = w[0] * m[0] + w[1] * m[1] + w[2] * m[2];
   }
   if (shows == 1) number = texelFetch(numbers, at(cell), 0).x;
 #ifdef SHADOW
@@ -101,6 +107,7 @@ uniform mat4 viewMatrix;
 uniform vec3 cameraPosition;
 uniform bool isOrthographic;
 uniform vec3 paint;
+uniform bool isMarked;
 uniform int shows;
 uniform vec2 ends;
 uniform sampler2D map;
@@ -110,6 +117,7 @@ uniform int chosen;
 in vec3 world;
 in vec3 bent;
 in float number;
+in vec3 mark;
 flat in int cell;
 out vec4 colour;
 ${LIGHT}
@@ -125,6 +133,12 @@ void main() {
     skin = known ? texture(map, vec2((share * 63.0 + 0.5) / 64.0, 0.5)).rgb : vec3(0.69, 0.706, 0.729);
   }
   skin = toLinear(skin);
+  if (isMarked && shows == 0) {
+    // Plain and another tone in turn, in eighths of space around the cell at rest, as in pictures.
+    vec3 side = clamp(mark / max(fwidth(mark), 1e-9), -1.0, 1.0);
+    bool isPale = dot(skin, vec3(0.2126, 0.7152, 0.0722)) >= 0.5;
+    skin = mix(skin, isPale ? 0.3 * skin : skin + 0.75 * (1.0 - skin), 0.5 - 0.5 * side.x * side.y * side.z);
+  }
   vec3 normal = normalize(bent);
   // The outside faces the viewer where it lies on the side that is seen; gl_FrontFacing means another thing in each pass.
   bool isOutside = dot(cross(dFdx(world), dFdy(world)), normal) > 0.0;
@@ -191,7 +205,7 @@ export class Cells {
     this.meshes = types.map((type) => {
       const material = (fragmentShader, paint) => new THREE.RawShaderMaterial({
         glslVersion: THREE.GLSL3, vertexShader: VERTEX, fragmentShader, side: THREE.DoubleSide,
-        uniforms: { ...shared, rings: { value: null }, cornersOf: { value: null }, paint: { value: paint } },
+        uniforms: { ...shared, rings: { value: null }, cornersOf: { value: null }, restOf: { value: null }, isMarked: { value: false }, paint: { value: paint } },
       });
       const paint = new THREE.Vector3(...[1, 3, 5].map((at) => parseInt(type.colour.slice(at, at + 2), 16) / 255));
       const mesh = new THREE.Mesh(undefined, material(FRAGMENT, paint));
@@ -219,6 +233,31 @@ export class Cells {
       this.shadows.add(shadow);
     }
     this.shadows.visible = false;
+  }
+
+  /** Paints cells of some types in two tones, so that they are seen to turn from where they are in a frame, the first of the result. */
+  mark(kinds, frame) {
+    [this.marked, this.rest] = [kinds, frame];
+    this.meshes.forEach((mesh, kind) => {
+      const isMarked = kinds.includes(kind) && frame.kinds.includes(kind);
+      if (isMarked && !mesh.userData.rest) mesh.userData.rest = this.restOf(kind, frame);
+      const { uniforms } = mesh.userData.skin;
+      uniforms.isMarked.value = isMarked;
+      uniforms.restOf.value = mesh.userData.rest ?? null;
+    });
+  }
+
+  /** Where the atoms of the first cell of a type lie from their mean in a frame. */
+  restOf(kind, frame) {
+    const { atoms } = this.types[kind];
+    let first = 0;
+    for (let cell = 0; frame.kinds[cell] !== kind; cell += 1) first += this.types[frame.kinds[cell]].atoms;
+    const found = Array.from({ length: atoms }, (_, atom) => position(frame, first + atom));
+    const mean = [0, 1, 2].map((axis) => found.reduce((sum, at) => sum + at[axis], 0) / atoms);
+    const rest = texture(atoms, THREE.RGBAFormat, THREE.FloatType, 'RGBA32F', Float32Array, 4);
+    found.forEach((at, atom) => rest.image.data.set(at.map((part, axis) => part - mean[axis]), 4 * atom));
+    rest.needsUpdate = true;
+    return rest;
   }
 
   /** How much skins hide; what is seen through is drawn after all else, its far side before its near one. */

@@ -1,6 +1,6 @@
 // Charts: the document's, and those of what one clicks; a cursor shows the frame in all of them.
 
-import { short, ticks } from './words.js';
+import { powers, short, ticks } from './words.js';
 
 const MARGIN = { left: 54, right: 10, top: 8, bottom: 34 };
 
@@ -113,10 +113,7 @@ export class Chart {
     context.fillStyle = ink;
     const marks = (axis, count) => {
       const [low, high] = ends[axis];
-      if (!this.about[axis].log) return ticks(low, high, count);
-      const powers = [];
-      for (let k = Math.ceil(Math.log10(low) - 1e-9); k <= Math.log10(high) + 1e-9; k += 1) powers.push(10 ** k);
-      return powers.length > 1 ? powers : ticks(low, high, count);
+      return (this.about[axis].log ? powers : ticks)(low, high, count);
     };
     context.strokeStyle = line;
     context.textAlign = 'right';

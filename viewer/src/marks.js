@@ -1,7 +1,7 @@
 // What is written over the view: title, time, scale bar, axes, and what colours mean. A picture that is saved has it, too.
 
 import { nice } from './scenery.js';
-import { isConstant, short, ticks } from './words.js';
+import { isConstant, powers, short, ticks } from './words.js';
 
 const FONT = 'system-ui, "Segoe UI", "Helvetica Neue", Arial, sans-serif';
 
@@ -22,6 +22,7 @@ export function drawMarks(context, width, height, scale, what) {
     context.lineWidth = 3;
     context.strokeStyle = what.dark ? 'rgba(20, 23, 28, 0.75)' : 'rgba(255, 255, 255, 0.75)';
     context.strokeText(text, x, y);
+    context.fillStyle = ink;
     context.fillText(text, x, y);
   };
   if (what.title) write(what.title, 16, 26, 'left', '600 15px');
@@ -34,7 +35,8 @@ export function drawMarks(context, width, height, scale, what) {
     context.fillRect(x, h - 22, length * perMicron, 4);
     write(length < 1 ? `${Number((1000 * length).toPrecision(3))} nm` : `${Number(length.toPrecision(3))} µm`, x, h - 29);
   }
-  axes(context, w - 44, h - 44, what.axes, ink);
+  if (what.axes) axes(context, w - 44, h - 44, what.axes, write);
+  context.fillStyle = ink;
   let top = 48;
   if (what.names.length > 1 && !what.scale) {
     for (const { name, colour, count } of what.names.slice(0, 14)) {
@@ -52,26 +54,40 @@ export function drawMarks(context, width, height, scale, what) {
   }
 }
 
-function axes(context, x, y, directions, ink) {
-  context.lineWidth = 1.5;
-  context.font = `11px ${FONT}`;
-  context.textAlign = 'center';
-  context.textBaseline = 'middle';
-  ['x', 'y', 'z'].forEach((name, axis) => {
-    const [dx, dy] = directions[axis];
-    context.strokeStyle = ['#c0392b', '#2e8b57', '#2a6fbb'][axis];
-    context.beginPath();
-    context.moveTo(x, y);
-    context.lineTo(x + 24 * dx, y - 24 * dy);
-    context.stroke();
-    context.fillStyle = ink;
-    if (Math.hypot(dx, dy) > 0.15) context.fillText(name, x + 32 * dx, y - 32 * dy);
-  });
-  context.textBaseline = 'alphabetic';
+/** Which way x, y and z go: lines with letters, as in pictures that `render` makes. */
+function axes(context, x, y, all, write) {
+  const rim = context.strokeStyle;
+  const away = ([right, up], far) => {
+    const length = Math.max(Math.hypot(right, up), 1e-9);
+    return [(right * far) / length, (up * far) / length];
+  };
+  // What points away is drawn first.
+  for (const { name, colour, end: [right, up] } of [...all].sort((one, other) => one.end[2] - other.end[2])) {
+    const length = Math.hypot(right, up);
+    const isEndOn = length < 0.15;
+    context.lineCap = 'round';
+    for (const [paint, wide] of [[rim, 5], [colour, 2]]) {
+      context.strokeStyle = context.fillStyle = paint;
+      context.lineWidth = wide;
+      context.beginPath();
+      if (isEndOn) context.arc(x, y, 2 + wide / 2, 0, 2 * Math.PI);
+      else {
+        context.moveTo(x, y);
+        context.lineTo(x + 24 * right, y - 24 * up);
+      }
+      if (isEndOn) context.fill();
+      else context.stroke();
+    }
+    // The letter of a dot stands where the other lines are not.
+    const sum = [0, 1].map((part) => all.reduce((so_far, axis) => so_far + axis.end[part], 0));
+    const [across, above] = isEndOn ? away([right - sum[0], up - sum[1]], 12) : away([right, up], 24 * length + 9);
+    write(name, x + across, y - above + 4, 'center', '12px');
+  }
+  context.lineCap = 'butt';
 }
 
 /** A bar of colours with round numbers, its label above. */
-function bar(context, right, top, height, { colours, ends: [low, high], label }, ink, write) {
+function bar(context, right, top, height, { colours, ends: [low, high], label, isLog }, ink, write) {
   const [x, width] = [right - 12, 12];
   const colour = (share) => `rgb(${colours[Math.round(share * (colours.length - 1))].join(',')})`;
   write(label, right, top - 12, 'right', '12px');
@@ -87,8 +103,9 @@ function bar(context, right, top, height, { colours, ends: [low, high], label },
     context.fillRect(x, top + row, width, 1.5);
   }
   context.fillStyle = ink;
-  for (const tick of ticks(low, high, 5)) {
-    const y = top + height * (1 - (tick - low) / (high - low));
+  const bend = isLog ? Math.log : (value) => value;
+  for (const tick of (isLog ? powers : ticks)(low, high, 5)) {
+    const y = top + height * (1 - (bend(tick) - bend(low)) / (bend(high) - bend(low)));
     context.fillRect(x - 4, y - 0.5, 4, 1);
     write(short(tick), x - 7, y + 4, 'right', '12px');
   }

@@ -167,7 +167,7 @@ export class Slice {
       glslVersion: THREE.GLSL3, side: THREE.DoubleSide, transparent: true,
       uniforms: {
         values: { value: texture }, map: { value: null }, ends: { value: new THREE.Vector2(0, 1) }, scale: { value: new THREE.Vector2(0, 1) },
-        cells: { value: vector(field.cells) }, alpha: { value: 1 },
+        cells: { value: vector(field.cells) }, alpha: { value: 1 }, isLog: { value: false },
       },
       vertexShader: `precision highp float;
 uniform mat4 modelViewMatrix, projectionMatrix;
@@ -182,6 +182,7 @@ uniform sampler2D map;
 uniform vec2 ends, scale;
 uniform vec3 cells;
 uniform float alpha;
+uniform bool isLog;
 in vec3 at;
 out vec4 colour;
 float value(ivec3 p) { return float(texelFetch(values, clamp(p, ivec3(0), ivec3(cells) - 1), 0).x); }
@@ -197,8 +198,8 @@ void main() {
     sum += w.x * w.y * w.z * value(base + near);
   }
   float found = scale.x + sum / 65534.0 * (scale.y - scale.x);
-  float share = clamp((found - ends.x) / max(ends.y - ends.x, 1e-30), 0.0, 1.0);
-  colour = vec4(texture(map, vec2((share * 63.0 + 0.5) / 64.0, 0.5)).rgb, alpha);
+  float share = isLog ? log(max(found, 1e-30) / ends.x) / log(ends.y / ends.x) : (found - ends.x) / max(ends.y - ends.x, 1e-30);
+  colour = vec4(texture(map, vec2((clamp(share, 0.0, 1.0) * 63.0 + 0.5) / 64.0, 0.5)).rgb, alpha);
 }`,
     });
     this.mesh = new THREE.Mesh(new THREE.BufferGeometry(), this.material);
@@ -284,6 +285,7 @@ void main() { colour = vec4(paint * (1.0 - 0.25 * abs(lift)), 1.0); }
 const KINDS = {
   fibres: { paint: [0.66, 0.11, 0.18], width: 4, isArrow: false },
   links: { paint: [0.23, 0.25, 0.29], width: 2.5, isArrow: false },
+  linked: { paint: [0.23, 0.25, 0.29], width: 5, isArrow: false },
   contacts: { paint: [0.2, 0.23, 0.28], width: 2, isArrow: false },
   traction: { paint: [0.84, 0.37, 0.0], width: 2.2, isArrow: true },
   loads: { paint: [0.23, 0.25, 0.29], width: 3, isArrow: true },
@@ -302,14 +304,14 @@ export class Lines {
     this.geometry.instanceCount = 0;
     this.material = new THREE.RawShaderMaterial({
       glslVersion: THREE.GLSL3, vertexShader: LINES_VERTEX, fragmentShader: LINES_FRAGMENT, side: THREE.DoubleSide,
-      // Contacts and tails are seen through the cells.
-      depthTest: kind !== 'contacts',
+      // Contacts, links between cells and tails are seen through the cells.
+      depthTest: kind !== 'contacts' && kind !== 'linked',
       uniforms: { screen, width: { value: width }, paint: { value: vector(paint) }, isArrow: { value: isArrow }, strongest: { value: 0 } },
     });
     this.mesh = new THREE.Mesh(this.geometry, this.material);
     this.mesh.frustumCulled = false;
     this.mesh.renderOrder = 2;
-    this.scales = kind === 'fibres' || kind === 'contacts';
+    this.scales = ['fibres', 'contacts', 'linked'].includes(kind);
   }
 
   show({ count, all }) {

@@ -7,7 +7,7 @@ import { json } from './source.js';
 
 const byId = (id) => document.getElementById(id);
 
-const LINES = { links: 'Links', fibres: 'Fibres', contacts: 'Contacts', traction: 'Tractions', loads: 'Loads' };
+const LINES = { links: 'Links', linked: 'Links between cells', fibres: 'Fibres', contacts: 'Contacts', traction: 'Tractions', loads: 'Loads' };
 
 export class Side {
   constructor(viewer) {
@@ -31,7 +31,7 @@ export class Side {
     for (const name of [...Object.keys(VIEWS), 'document']) views.append(button(name[0].toUpperCase() + name.slice(1), `The ${name === 'document' ? 'view of the document' : `view from the ${name}`}`, () => viewer.view(name)));
     views.append(button('Fit', 'Puts all cells into view (f)', () => viewer.fit()));
     parts.push(element('h2', {}, 'View'), views);
-    parts.push(element('div', { className: 'row' }, check('Parallel', state.parallel, set('parallel')), check('Dark', state.theme === 'dark', (dark) => viewer.set('theme', dark ? 'dark' : 'light')), check('Smooth', state.smooth, set('smooth')), check('Title', state.title, set('title'))));
+    parts.push(element('div', { className: 'row' }, check('Parallel', state.parallel, set('parallel')), check('Dark', state.theme === 'dark', (dark) => viewer.set('theme', dark ? 'dark' : 'light')), check('Smooth', state.smooth, set('smooth')), check('Title', state.title, set('title')), check('Axes', state.axes, set('axes'))));
     parts.push(element('h2', {}, 'Cells'));
     const colours = [['type', 'Type'], ['id', 'Cell'], ...scene.quantities.map(({ name, label }) => [name, label])];
     parts.push(row('Colour by', choice(colours, state.colour, (value) => this.colour(value))));
@@ -44,7 +44,7 @@ export class Side {
     parts.push(row('Cut', cut));
     parts.push(element('h2', {}, 'Types'), this.types());
     const lines = scene.lines.map((kind) => check(LINES[kind], state.lines.includes(kind), (on) => viewer.set('lines', on ? [...viewer.state.lines, kind] : viewer.state.lines.filter((other) => other !== kind))));
-    lines.push(check('Tails', state.tails, set('tails')));
+    lines.push(check('Tails', state.tails, set('tails')), check('Marks', state.marks, set('marks')));
     if (scene.obstacles.length) lines.push(check('Planes and tools', state.grid, set('grid')));
     parts.push(element('h2', {}, 'Also shown'), element('div', { className: 'row' }, ...lines));
     if (scene.fields.length) parts.push(...this.fields());
@@ -80,6 +80,7 @@ export class Side {
       parts.push(row('At', range(0, 1, 0.005, state.share, (value) => viewer.set('share', value))));
     }
     parts.push(row('Opacity', range(0.1, 1, 0.05, state.alpha, (value) => viewer.set('alpha', value))));
+    parts.push(element('div', { className: 'row' }, check('Colours in powers of ten', state.decades, (value) => viewer.set('decades', value))));
     return parts;
   }
 
@@ -89,7 +90,7 @@ export class Side {
   }
 
   tellEnds() {
-    const { scale, state } = this.viewer;
+    const { state, colours: { scale } } = this.viewer;
     this.endsRow.hidden = state.colour === 'type' || state.colour === 'id';
     if (scale) scale.ends.forEach((end, k) => { this.ends[k].value = String(Number(end.toPrecision(5))); });
   }

@@ -40,6 +40,18 @@ export function ticks(low, high, count) {
   return found;
 }
 
+/** Powers of ten between two ends above 0; round numbers where there are less than two. */
+export function powers(low, high, count) {
+  const found = [];
+  for (let k = Math.ceil(Math.log10(low) - 1e-9); k <= Math.log10(high) + 1e-9; k += 1) found.push(10 ** k);
+  return found.length > 1 ? found : ticks(low, high, count);
+}
+
+/** The ends of a logarithmic scale for what lies between two: above 0, and six decades at most. */
+export function decades([low, high]) {
+  return high > 0 ? [Math.max(low, high * 1e-6), high] : [0.1, 1];
+}
+
 /** Ends of a scale of colours that round-off does not stretch: those of a number that does not change are one. */
 export function isConstant([low, high]) {
   return !(high - low > 1e-6 * Math.max(Math.abs(low), Math.abs(high)));

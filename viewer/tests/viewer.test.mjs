@@ -96,8 +96,8 @@ async function looks(page, served) {
 
   // Colours by a number, with its bar.
   await page.getByLabel('Colour by').selectOption('position_x');
-  await page.waitForFunction(() => window.pseudopod.scale?.label.startsWith('position x'));
-  const ends = await page.evaluate(() => window.pseudopod.scale.ends);
+  await page.waitForFunction(() => window.pseudopod.colours.scale?.label.startsWith('position x'));
+  const ends = await page.evaluate(() => window.pseudopod.colours.scale.ends);
   assert.ok(ends[0] < -5 && ends[1] > 5, String(ends));
 
   // A cell that is clicked tells its numbers, which are those of the frame.
@@ -161,6 +161,68 @@ test('a result that is served', { timeout: 120_000 }, async () => {
   await looks(page, server.address);
   await page.context().close();
   assert.equal((await server.stop()).code, 0);
+});
+
+const LINKED = `
+title = "Linked cells"
+[run]
+until = "20 s"
+integrator = { max_step = "1 s" }
+[output]
+every = "2 s"
+[cells.a]
+mesh = { shape = "icosphere", radius = "5 um", level = 0 }
+placement = { at = [["-6 um", "0 um", "0 um"], ["6 um", "0 um", "0 um"]] }
+[cells.a.mechanics]
+drag = "20 pN s/um"
+shape_memory = { stiffness = "6 pN/um" }
+[cells.a.motility]
+attraction = { to = ["0 um", "0 um", "0 um"], stiffness = "0.02 pN/um" }
+[contact]
+model = "links"
+[[contact.between]]
+types = ["a", "a"]
+link = "2 pN/um"
+[picture]
+links = true
+`;
+
+/** How many pixels of what is written over the view have nearly a colour. */
+const marked = (page, colour) => page.evaluate((colour) => {
+  const { marks } = window.pseudopod;
+  const { data } = marks.getContext('2d').getImageData(0, 0, marks.width, marks.height);
+  let count = 0;
+  for (let at = 0; at < data.length; at += 4) if (data[at + 3] > 200 && colour.every((part, k) => Math.abs(part - data[at + k]) < 12)) count += 1;
+  return count;
+}, colour);
+
+test('links between cells, marks on them, and axes', { timeout: 120_000 }, async () => {
+  await writeFile(files.file('linked.toml'), LINKED);
+  const linked = files.file('linked.h5');
+  const made = await run('run', files.file('linked.toml'), '-o', linked, '--no-pictures', '--quiet');
+  assert.equal(made.code, 0, made.err);
+  const server = await serve('view', linked);
+  const page = await openPage(browser, server.address);
+  await page.focus('#view');
+  await page.keyboard.press('End');
+  await page.waitForFunction(() => window.pseudopod.drawn.frame === 10);
+  assert.equal(await page.evaluate(() => window.pseudopod.lines.get('linked').geometry.instanceCount), 1);
+  assert.ok(await page.getByLabel('Links between cells').isChecked());
+  // Marks make a part of each cell paler.
+  const plain = await pixels(page);
+  await page.getByLabel('Marks').check();
+  const paler = await pixels(page);
+  assert.ok(paler.mean[0] > plain.mean[0] + 1, `${plain.mean} ${paler.mean}`);
+  // The axes have the colours of pictures, and can be left out.
+  await page.evaluate(() => window.pseudopod.view('front'));
+  await page.evaluate(() => window.pseudopod.draw());
+  for (const colour of [[0xd5, 0x5e, 0x00], [0x00, 0x72, 0xb2]]) assert.ok(await marked(page, colour) > 20, String(colour));
+  await page.getByLabel('Axes').uncheck();
+  await page.evaluate(() => window.pseudopod.draw());
+  assert.equal(await marked(page, [0xd5, 0x5e, 0x00]), 0);
+  assert.deepEqual(page.errors, []);
+  await page.context().close();
+  await server.stop();
 });
 
 test('a page from the disk', { timeout: 120_000 }, async () => {

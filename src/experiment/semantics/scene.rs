@@ -102,6 +102,9 @@ impl Check<'_> {
         }
         self.range("picture.colour_range", experiment.picture.colour_range);
         self.range("picture.field_range", experiment.picture.field_range);
+        if experiment.picture.field_log {
+            self.decades("picture.field_range", experiment.picture.field_range);
+        }
         for (index, plot) in experiment.plot.iter().enumerate() {
             match &plot.kind {
                 PlotKind::Profile { times: Some(times), .. } => {
@@ -116,7 +119,12 @@ impl Check<'_> {
                 PlotKind::Measures { x, log_x, curves } => {
                     self.measures_of_plot(&format!("plot[{index}]"), (x, *log_x), curves);
                 }
-                PlotKind::Kymograph { range, .. } => self.range(&format!("plot[{index}].range"), *range),
+                PlotKind::Kymograph { range, log, .. } => {
+                    self.range(&format!("plot[{index}].range"), *range);
+                    if *log {
+                        self.decades(&format!("plot[{index}].range"), *range);
+                    }
+                }
                 _ => {}
             }
         }
@@ -151,6 +159,20 @@ impl Check<'_> {
         if range.is_some_and(|[low, high]| low.is_nan() || high.is_nan() || low >= high) {
             let message = format!("`{path}` does not go upwards");
             self.fault(path, "the first must be smaller", message, "give the smaller number first");
+        }
+    }
+
+    /// A scale of powers of ten must be above 0.
+    fn decades(&mut self, path: &str, range: Option<[f64; 2]>) {
+        if range.is_some_and(|[low, _]| low <= 0.0) {
+            let message =
+                format!("`{path}` begins at {}, which powers of ten never reach", range.unwrap_or_default()[0]);
+            self.fault(
+                path,
+                "must be above 0",
+                message,
+                "let it begin above 0, as [0.001, 1] does, or take a linear scale",
+            );
         }
     }
 

@@ -6,7 +6,7 @@ use super::frame::{Frame, LABEL, NUMBER};
 use crate::picture::Image;
 use crate::picture::colour::{Colour, ColourMap};
 use crate::picture::text::{self, Anchor, Style, Weight, text_width, write_text, write_turned_text};
-use crate::picture::ticks::{self, Ends};
+use crate::picture::ticks::{self, Scale};
 
 /// Width of the colour bar and its distance from the frame, px.
 const BAR: f64 = 16.0;
@@ -29,6 +29,8 @@ pub struct Heat {
     pub map: ColourMap,
     /// Numbers of the first and the last colour.
     pub range: [f64; 2],
+    /// How numbers are spaced between them.
+    pub scale: Scale,
     /// Quantity with unit.
     pub label: String,
 }
@@ -54,7 +56,7 @@ impl Heat {
     fn ticks(&self) -> ticks::Ticks {
         let [low, high] = self.range;
         let (low, high) = if low.is_finite() && high.is_finite() { (low, high) } else { (0.0, 1.0) };
-        let ticks = ticks::linear(low.min(high), low.max(high), 7, Ends::Exact);
+        let ticks = self.scale.marks(low.min(high), low.max(high), 7);
         match low == high {
             true => ticks::Ticks { major: vec![(low, ticks::constant(low, &self.label))], exponent: 0, ..ticks },
             false => ticks,
@@ -86,7 +88,7 @@ impl Heat {
                     |y: usize| if s == 0.0 { at(left, y) } else { at(left, y) + s * (at(right, y) - at(left, y)) };
                 let value = if t == 0.0 { mixed(below) } else { mixed(below) + t * (mixed(above) - mixed(below)) };
                 let start = 3 * (row * width + column);
-                image.rgb[start..start + 3].copy_from_slice(&self.map.of_value(value, self.range).0);
+                image.rgb[start..start + 3].copy_from_slice(&self.map.at(self.scale.share(value, self.range)).0);
             }
         }
         image
@@ -123,7 +125,7 @@ impl Heat {
         let ticks = self.ticks();
         let mut widest: f64 = 0.0;
         for (value, text) in &ticks.major {
-            let y = top + long - (value - ticks.low) / (ticks.high - ticks.low) * long;
+            let y = top + long - self.scale.share(*value, [ticks.low, ticks.high]) * long;
             let _ = writeln!(
                 svg,
                 r#"<path d="M{:.1} {y:.1}h4" stroke="{}" stroke-width="1.1"/>"#,

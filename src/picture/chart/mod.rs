@@ -22,6 +22,7 @@ use super::image::write_file;
 use super::svg::svg_to_pixels;
 use crate::error::Result;
 
+pub use super::ticks::Scale;
 pub use draw::{colours, to_svg};
 pub use heat::{Heat, Shading};
 pub use stacked::save_stacked;
@@ -70,16 +71,6 @@ pub enum Range {
     FromZero,
     /// These ends, in the axis' unit.
     Fixed(f64, f64),
-}
-
-/// How values are spaced along an axis.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Scale {
-    /// Equal differences take equal lengths.
-    #[default]
-    Linear,
-    /// Equal ratios take equal lengths.
-    Log,
 }
 
 /// How lengths along x and y relate.

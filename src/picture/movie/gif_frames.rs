@@ -1,9 +1,15 @@
-//! Frames of an animated GIF: 255 colours chosen for every frame, only what changed since the frame before.
+//! Films as animated GIF: 255 colours chosen for the whole film, of each frame only what changed since the frame before.
+//!
+//! A colour at a point of the picture is drawn in the same way in all frames. So nothing flickers that stands still, and what moves leaves
+//! no trace where it was.
 
 use std::io::Write;
 
+use super::kept::{Kept, Taken};
 use crate::picture::Image;
 
+/// Hundredths of a second.
+pub(super) const PER_SECOND: f64 = 100.0;
 /// Bits per channel in which colours are counted.
 const BITS: u32 = 6;
 /// Palette entry that leaves the frame before visible.
@@ -11,83 +17,61 @@ const UNCHANGED: u8 = 255;
 
 /// Writes frames of one size.
 pub(super) struct GifFrames<W: Write> {
-    target: Option<W>,
-    encoder: Option<gif::Encoder<W>>,
-    before: Option<Image>,
+    target: W,
+    frames: Kept,
+    delays: Vec<u16>,
 }
 
 impl<W: Write> GifFrames<W> {
     pub fn new(target: W) -> Self {
-        Self { target: Some(target), encoder: None, before: None }
+        Self { target, frames: Kept::default(), delays: Vec::new() }
     }
 
     /// Adds a frame that stays for `delay` hundredths of a second.
     pub fn add(&mut self, image: &Image, delay: u16) -> std::io::Result<()> {
+        self.delays.push(delay);
+        self.frames.add(image)
+    }
+
+    /// Writes the file: its colours are known once all frames are.
+    pub fn finish(mut self) -> std::io::Result<()> {
+        let Some([width, height, _]) = self.frames.extent() else { return Ok(()) };
         let side = |pixels: usize| {
             u16::try_from(pixels).map_err(|_| std::io::Error::other("a GIF is at most 65 535 pixels wide and high"))
         };
-        let (width, height) = (side(image.width)?, side(image.height)?);
-        if let Some(target) = self.target.take() {
-            let mut encoder = gif::Encoder::new(target, width, height, &[]).map_err(std::io::Error::other)?;
-            encoder.set_repeat(gif::Repeat::Infinite).map_err(std::io::Error::other)?;
-            self.encoder = Some(encoder);
-        }
-        let [left, top, right, bottom] =
-            self.before.as_ref().map_or([0, 0, image.width, image.height], |before| changed(before, image));
-        let same =
-            |at: usize| self.before.as_ref().is_some_and(|before| before.rgb[at..at + 3] == image.rgb[at..at + 3]);
-        let palette = Palette::of(image, &same);
+        let palette = Palette::of(&self.frames)?;
         let mut table = palette.table();
-        let mut buffer = Vec::with_capacity((right - left) * (bottom - top));
-        for y in top..bottom {
-            for x in left..right {
-                let at = 3 * (y * image.width + x);
-                let pixel = [image.rgb[at], image.rgb[at + 1], image.rgb[at + 2]];
-                buffer.push(if same(at) { UNCHANGED } else { table.index(pixel, x, y) });
+        let encoder = gif::Encoder::new(&mut self.target, side(width)?, side(height)?, &palette.bytes());
+        let mut encoder = encoder.map_err(std::io::Error::other)?;
+        encoder.set_repeat(gif::Repeat::Infinite).map_err(std::io::Error::other)?;
+        self.frames.take(|number, Taken { image, area, before }| {
+            let mut buffer = Vec::with_capacity(area.width() * area.height());
+            for y in area.top..area.bottom {
+                for x in area.left..area.right {
+                    let at = 3 * (y * width + x)..3 * (y * width + x) + 3;
+                    let pixel = &image.rgb[at.clone()];
+                    let stays = before.is_some_and(|before| before.rgb[at] == *pixel);
+                    buffer.push(if stays { UNCHANGED } else { table.index([pixel[0], pixel[1], pixel[2]], x, y) });
+                }
             }
-        }
-        let frame = gif::Frame {
-            delay,
-            dispose: gif::DisposalMethod::Keep,
-            transparent: Some(UNCHANGED),
-            left: left as u16,
-            top: top as u16,
-            width: (right - left) as u16,
-            height: (bottom - top) as u16,
-            palette: Some(palette.bytes()),
-            buffer: buffer.into(),
-            ..gif::Frame::default()
-        };
-        self.before = Some(image.clone());
-        let encoder = self.encoder.as_mut().ok_or_else(|| std::io::Error::other("the file was given up earlier"))?;
-        encoder.write_frame(&frame).map_err(std::io::Error::other)
-    }
-
-    /// Writes the end of the file.
-    pub fn finish(self) -> std::io::Result<()> {
-        match self.encoder {
-            Some(encoder) => encoder.into_inner().map_err(std::io::Error::other)?.flush(),
-            None => Ok(()),
-        }
+            let frame = gif::Frame {
+                delay: self.delays[number],
+                dispose: gif::DisposalMethod::Keep,
+                transparent: Some(UNCHANGED),
+                left: side(area.left)?,
+                top: side(area.top)?,
+                width: side(area.width())?,
+                height: side(area.height())?,
+                buffer: buffer.into(),
+                ..gif::Frame::default()
+            };
+            encoder.write_frame(&frame).map_err(std::io::Error::other)
+        })?;
+        encoder.into_inner().map_err(std::io::Error::other)?.flush()
     }
 }
 
-/// The smallest rectangle with all pixels that differ: left, top, right, bottom; one pixel when none does.
-fn changed(before: &Image, image: &Image) -> [usize; 4] {
-    let (mut low, mut high) = ([usize::MAX; 2], [0; 2]);
-    for (n, (a, b)) in before.rgb.chunks_exact(3).zip(image.rgb.chunks_exact(3)).enumerate() {
-        if a != b {
-            let at = [n % image.width, n / image.width];
-            for k in 0..2 {
-                low[k] = low[k].min(at[k]);
-                high[k] = high[k].max(at[k] + 1);
-            }
-        }
-    }
-    if low[0] == usize::MAX { [0, 0, 1, 1] } else { [low[0], low[1], high[0], high[1]] }
-}
-
-/// Up to 255 colours that stand for all of a frame's.
+/// Up to 255 colours that stand for all of a film's.
 struct Palette {
     colours: Vec<[u8; 3]>,
 }
@@ -102,14 +86,22 @@ struct Count {
 
 impl Palette {
     /// Colours by median cut: the box of colours with the largest squared spread is halved until 255 boxes are there.
-    fn of(image: &Image, unchanged: &dyn Fn(usize) -> bool) -> Self {
+    fn of(frames: &Kept) -> std::io::Result<Self> {
         let mut counts = vec![Count { bin: 0, number: 0, sum: [0; 3] }; 1 << (3 * BITS)];
-        for (n, pixel) in image.rgb.chunks_exact(3).enumerate().filter(|(n, _)| !unchanged(3 * n)) {
-            let _ = n;
-            let count = &mut counts[bin([pixel[0], pixel[1], pixel[2]]) as usize];
-            count.number += 1;
-            (0..3).for_each(|k| count.sum[k] += u64::from(pixel[k]));
-        }
+        frames.take(|_, Taken { image, area, .. }| {
+            for row in area.rows(image.width) {
+                for pixel in image.rgb[row].chunks_exact(3) {
+                    let count = &mut counts[bin([pixel[0], pixel[1], pixel[2]]) as usize];
+                    count.number += 1;
+                    (0..3).for_each(|k| count.sum[k] += u64::from(pixel[k]));
+                }
+            }
+            Ok(())
+        })?;
+        Ok(Self::of_counts(counts))
+    }
+
+    fn of_counts(counts: Vec<Count>) -> Self {
         let mut used: Vec<Count> = Vec::new();
         for (n, count) in counts.into_iter().enumerate().filter(|(_, count)| count.number > 0) {
             used.push(Count { bin: n as u32, ..count });

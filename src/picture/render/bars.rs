@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use crate::picture::colour::ColourMap;
 use crate::picture::text::{self, Anchor, Style, Weight, text_width, write_text};
-use crate::picture::ticks::{self, Ends};
+use crate::picture::ticks::{self, Ends, Scale};
 
 /// What the colours of a field mean.
 #[derive(Debug, Clone, PartialEq)]
@@ -13,8 +13,21 @@ pub struct FieldBar {
     pub map: ColourMap,
     /// Values of the first and the last colour.
     pub range: [f64; 2],
+    /// How values are spaced between them.
+    pub scale: Scale,
     /// Quantity with unit.
     pub label: String,
+}
+
+/// Length and thickness of a horizontal bar, and how far its end is from the margin, for a picture 720 px high.
+const LONG: f64 = 270.0;
+const THICK: f64 = 13.0;
+const OFF: f64 = 8.0;
+
+/// How far a horizontal bar and its label reach from the margin at its right, px.
+pub(super) fn bar_width(label: &str, unit: f64) -> f64 {
+    // Half the first mark's number, and a power of ten behind the label.
+    (LONG * unit + 20.0 * unit).max(text_width(label, 17.0 * unit) + 60.0 * unit) + OFF * unit
 }
 
 /// A horizontal bar of colours with marks below and the quantity above, its right bottom corner at the margin.
@@ -27,8 +40,8 @@ pub(super) fn write_colour_bar(
     bottom: f64,
     unit: f64,
 ) {
-    let (long, thick) = (270.0 * unit, 13.0 * unit);
-    let (left, top) = (right - long - 8.0 * unit, bottom - 20.0 * unit - thick);
+    let (long, thick) = (LONG * unit, THICK * unit);
+    let (left, top) = (right - long - OFF * unit, bottom - 20.0 * unit - thick);
     if low == high {
         let (middle, style) =
             (left + 0.5 * long, Style { size: 15.0 * unit, anchor: Anchor::Middle, weight: Weight::Soft });
@@ -88,7 +101,7 @@ pub(super) fn write_standing_bar(svg: &mut String, bar: &FieldBar, right: f64, t
     let (long, thick, size) = (230.0 * unit, 14.0 * unit, 16.0 * unit);
     let [low, high] = bar.range;
     let (low, high) = if low.is_finite() && high.is_finite() { (low, high) } else { (0.0, 1.0) };
-    let mut ticks = ticks::linear(low.min(high), low.max(high), 6, Ends::Exact);
+    let mut ticks = bar.scale.marks(low.min(high), low.max(high), 6);
     let mut paint = "url(#field)".to_owned();
     if low == high {
         (ticks.exponent, ticks.major) = (0, vec![(low, ticks::constant(low, &bar.label))]);
@@ -119,7 +132,7 @@ pub(super) fn write_standing_bar(svg: &mut String, bar: &FieldBar, right: f64, t
     let (left, top) = (right - thick, top + above);
     write_box(svg, [left, top, thick, long], &paint, 0.6 * unit);
     for (value, text) in &ticks.major {
-        let y = top + long - (value - ticks.low) / (ticks.high - ticks.low) * long;
+        let y = top + long - bar.scale.share(*value, [ticks.low, ticks.high]) * long;
         let _ = writeln!(
             svg,
             r#"<path d="M{left:.1} {y:.1}h{:.1}" stroke="{}" stroke-width="{:.1}"/>"#,
@@ -141,7 +154,8 @@ mod tests {
         let written = |low: f64, high: f64| {
             let mut svg = String::new();
             write_colour_bar(&mut svg, ColourMap::Viridis, [low, high], "volume (fL)", 1000.0, 700.0, 1.0);
-            let bar = FieldBar { map: ColourMap::Ink, range: [low, high], label: "oxygen (uM)".into() };
+            let bar =
+                FieldBar { map: ColourMap::Ink, range: [low, high], scale: Scale::Linear, label: "oxygen (uM)".into() };
             write_standing_bar(&mut svg, &bar, 1000.0, 100.0, 1.0);
             svg
         };
@@ -149,5 +163,19 @@ mod tests {
         assert_eq!(one.matches(", constant").count(), 2, "{one}");
         assert!(!one.contains("linearGradient") && !one.contains(">60<") && !one.contains(">66<"), "{one}");
         assert!(written(60.0, 70.0).contains("linearGradient"));
+    }
+
+    #[test]
+    fn a_bar_of_decades_has_marks_at_them_and_equal_parts_for_each() {
+        let bar = FieldBar { map: ColourMap::Ink, range: [1e-3, 10.0], scale: Scale::Log, label: "cAMP (nM)".into() };
+        let mut svg = String::new();
+        write_standing_bar(&mut svg, &bar, 1000.0, 100.0, 1.0);
+        for text in [">0.001<", ">0.01<", ">0.1<", ">1<", ">10<"] {
+            assert!(svg.contains(text), "{text} in {svg}");
+        }
+        // From 130 px, where 10 stands, to 360.
+        for y in ["130.0", "187.5", "245.0", "302.5", "360.0"] {
+            assert!(svg.contains(&format!(" {y}h-4")), "{y} in {svg}");
+        }
     }
 }

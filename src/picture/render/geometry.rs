@@ -21,6 +21,8 @@ pub(super) struct Geometry {
     pub normals: Vec<Vector3<f32>>,
     /// Amounts of light, linear, per corner (or per facet, see [`Triangle::colour`]).
     pub colours: Vec<[f32; 3]>,
+    /// Where corners of bodies that are marked lie at rest from the middles of these, µm; those of others say nothing.
+    pub marks: Vec<Vector3<f32>>,
     pub triangles: Vec<Triangle>,
     /// Half the diagonal of a typical surface, µm: the scale of shadows.
     pub typical_radius: f64,
@@ -40,6 +42,8 @@ pub(super) struct Triangle {
     pub parts: u16,
     /// Whether its normals are on the side that is not seen.
     pub is_turned: bool,
+    /// Whether its body is painted in two tones.
+    pub is_marked: bool,
     /// 1 for a skin that hides everything behind it.
     pub opacity: f32,
     /// The number of its surface, or [`NOTHING`] for one without an outline.
@@ -56,6 +60,7 @@ impl Geometry {
             points: Vec::new(),
             normals: Vec::new(),
             colours: Vec::new(),
+            marks: Vec::new(),
             triangles: Vec::new(),
             typical_radius: 1.0,
             cut: None,
@@ -87,6 +92,11 @@ impl Geometry {
             self.points.push(point.cast());
         }
         self.normals.extend(skin.normals);
+        let is_marked = !skin.marks.is_empty();
+        if is_marked {
+            self.marks.resize(first as usize, Vector3::zeros());
+            self.marks.extend(skin.marks);
+        }
         let first_colour = self.colours.len() as u32;
         let Some(last) = (skin.colours.len() as u32).checked_sub(1) else { return };
         self.colours.extend(skin.colours);
@@ -105,6 +115,7 @@ impl Geometry {
                 lines: if surface.edges == Edges::Thin { piece.lines } else { 0 },
                 parts: piece.parts,
                 is_turned: (normals.dot(&normal) < 0.0) == faces_viewer,
+                is_marked,
                 opacity: surface.opacity.clamp(0.0, 1.0),
                 body,
                 side: surface.is_solid.then_some(side),

@@ -21,6 +21,7 @@ mod skin;
 mod spans;
 #[cfg(test)]
 pub(in crate::picture) mod tests;
+mod tripod;
 mod tubes;
 mod view;
 
@@ -33,6 +34,7 @@ pub(in crate::picture) use camera::basis;
 pub use camera::{Bounds, Camera, Insets, Projection};
 pub use overlay::{ClockUnit, Key, Overlay, ScaleBar, time_text};
 pub use scene::{Background, Edges, Floor, Pane, Scene, Sheet, Surface, SurfaceColour};
+pub use tripod::AXES;
 
 use geometry::Geometry;
 use raster::Band;

@@ -2,8 +2,9 @@
 
 use std::fmt::Write;
 
-use super::bars::{FieldBar, write_colour_bar, write_standing_bar};
+use super::bars::{FieldBar, bar_width, write_colour_bar, write_standing_bar};
 use super::camera::{Camera, Insets};
+use super::tripod::Tripod;
 use crate::picture::Image;
 use crate::picture::colour::{Colour, ColourMap};
 use crate::picture::svg::svg_to_pixels;
@@ -23,6 +24,8 @@ pub struct Overlay {
     pub key: Key,
     /// Right, standing.
     pub field: Option<FieldBar>,
+    /// Whether it is shown which way x, y and z go: bottom left, beside the scale bar, where there is space before the key.
+    pub axes: bool,
 }
 
 /// The line that says how long a µm is.
@@ -107,7 +110,7 @@ impl Overlay {
         let above = if self.title.is_empty() && self.time.is_empty() { 0.04 } else { 0.085 };
         let below = match (&self.key, self.scale_bar) {
             (Key::Bar { .. }, _) => 0.12,
-            (Key::None, ScaleBar::Hidden) => 0.04,
+            (Key::None, ScaleBar::Hidden) if !self.axes => 0.04,
             _ => 0.095,
         };
         let right = if self.field.is_some() { 0.17 } else { 0.0 };
@@ -119,14 +122,21 @@ impl Overlay {
         if image.width < 80 || image.height < 60 {
             return;
         }
-        let svg = self.to_svg(image.width, image.height, camera.pixels_per_micron(image.height));
+        let tripod = self.axes.then(|| Tripod::of(camera));
+        let svg = self.to_svg(image.width, image.height, camera.pixels_per_micron(image.height), tripod.as_ref());
         if let Ok(mut pixels) = svg_to_pixels(&svg, 1.0) {
             image.lay_over(pixels.data_mut());
         }
     }
 
     /// The overlay as SVG of the picture's size.
-    pub(super) fn to_svg(&self, width: usize, height: usize, pixels_per_micron: f64) -> String {
+    pub(super) fn to_svg(
+        &self,
+        width: usize,
+        height: usize,
+        pixels_per_micron: f64,
+        tripod: Option<&Tripod>,
+    ) -> String {
         let (width, height) = (width as f64, height as f64);
         // Lengths below are for a picture 720 px high; a tall narrow one is measured by its width.
         let unit = (height / 720.0).min(width / 720.0).max(0.45);
@@ -146,8 +156,10 @@ impl Overlay {
             let style = style(19.0, Anchor::End, Weight::Plain);
             write_text(&mut svg, width - margin, margin + 15.0 * unit, style, &self.time);
         }
+        let mut left = margin;
         if let Some(length) = self.bar_length(width / pixels_per_micron) {
             let pixels = length * pixels_per_micron;
+            left += pixels.max(text_width(&length_text(length), 17.0 * unit)) + 22.0 * unit;
             let (y, thick) = (height - margin - 1.0 * unit, (4.0 * unit).max(2.0).round());
             let _ = writeln!(
                 svg,
@@ -157,6 +169,11 @@ impl Overlay {
             );
             let style = style(17.0, Anchor::Middle, Weight::Plain);
             write_text(&mut svg, margin + 0.5 * pixels, y - thick - 8.0 * unit, style, &length_text(length));
+        }
+        // A key that needs the space has it.
+        let beside = |tripod: &&Tripod| left + tripod.width(unit) + 22.0 * unit <= self.key_left(width - margin, unit);
+        if let Some(tripod) = tripod.filter(beside) {
+            tripod.write(&mut svg, left, height - 10.0 * unit, unit);
         }
         match &self.key {
             Key::None => {}
@@ -171,6 +188,15 @@ impl Overlay {
         }
         svg.push_str("</svg>\n");
         svg
+    }
+
+    /// Where the key begins that ends at `right`, px.
+    fn key_left(&self, right: f64, unit: f64) -> f64 {
+        match &self.key {
+            Key::None => right,
+            Key::Names(names) => right - name_rows(names, right, unit).iter().map(|row| row.wide).fold(0.0, f64::max),
+            Key::Bar { label, .. } => right - bar_width(label, unit),
+        }
     }
 
     /// Length of the scale bar in a picture that is `across` µm wide.
@@ -194,26 +220,47 @@ fn length_text(length: f64) -> String {
     format!("{} {name}", short(value))
 }
 
+/// A row of the names of a key.
+struct Row<'a> {
+    names: Vec<&'a (String, Colour)>,
+    /// Its width, px.
+    wide: f64,
+}
+
+/// Size of the letters of names, radius of their dots, and what is between two of them, for a picture 720 px high.
+const NAME: f64 = 17.0;
+const DOT: f64 = 7.0;
+const GAP: f64 = 26.0;
+
+fn name_width(name: &str, unit: f64) -> f64 {
+    text_width(name, NAME * unit) + (2.0 * DOT + 9.0) * unit
+}
+
+/// Names in rows that take no more than a part of the picture's width.
+fn name_rows(names: &[(String, Colour)], right: f64, unit: f64) -> Vec<Row<'_>> {
+    let mut rows = vec![Row { names: Vec::new(), wide: 0.0 }];
+    for entry in names {
+        let (more, gap) = (name_width(&entry.0, unit), GAP * unit);
+        let last = rows.last_mut().expect("there is a first row");
+        if last.names.is_empty() {
+            (last.names, last.wide) = (vec![entry], more);
+        } else if last.wide + gap + more + gap > 0.62 * right {
+            rows.push(Row { names: vec![entry], wide: more });
+        } else {
+            last.names.push(entry);
+            last.wide += gap + more;
+        }
+    }
+    rows
+}
+
 /// Dots with names in rows that end at the right margin, from the bottom upwards.
 fn write_names(svg: &mut String, names: &[(String, Colour)], right: f64, bottom: f64, unit: f64) {
-    let (size, dot, gap) = (17.0 * unit, 7.0 * unit, 26.0 * unit);
-    let wide = |name: &str| text_width(name, size) + 2.0 * dot + 9.0 * unit;
-    let mut rows: Vec<Vec<&(String, Colour)>> = vec![Vec::new()];
-    let mut used = 0.0;
-    for entry in names {
-        let more = wide(&entry.0) + gap;
-        if used + more > 0.62 * right && used > 0.0 {
-            rows.push(Vec::new());
-            used = 0.0;
-        }
-        used += more;
-        rows.last_mut().expect("there is a first row").push(entry);
-    }
-    for (number, row) in rows.iter().rev().enumerate() {
+    let (size, dot) = (NAME * unit, DOT * unit);
+    for (number, row) in name_rows(names, right, unit).iter().rev().enumerate() {
         let y = bottom - 6.0 * unit - 27.0 * unit * number as f64;
-        let total: f64 = row.iter().map(|(name, _)| wide(name)).sum::<f64>() + gap * row.len().saturating_sub(1) as f64;
-        let mut x = right - total;
-        for (name, colour) in row {
+        let mut x = right - row.wide;
+        for (name, colour) in &row.names {
             let _ = writeln!(
                 svg,
                 r#"<circle cx="{:.1}" cy="{:.1}" r="{dot:.1}" fill="{}"/>"#,
@@ -223,7 +270,7 @@ fn write_names(svg: &mut String, names: &[(String, Colour)], right: f64, bottom:
             );
             let style = Style { size, anchor: Anchor::Start, weight: Weight::Plain };
             write_text(svg, x + 2.0 * dot + 8.0 * unit, y, style, name);
-            x += wide(name) + gap;
+            x += name_width(name, unit) + GAP * unit;
         }
     }
 }

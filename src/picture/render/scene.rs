@@ -1,6 +1,8 @@
 //! What can be drawn: surfaces, lines, a floor and panes, all in µm.
 
+use crate::Vec3;
 use crate::picture::colour::{Colour, ColourMap};
+use crate::picture::ticks::Scale;
 
 /// Everything in front of the camera.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -41,6 +43,9 @@ pub struct Surface {
     /// Whether a thin dark line is drawn where it meets another such surface in the picture, by which cells of one colour are told
     /// apart.
     pub is_outlined: bool,
+    /// Whether it is painted in two tones, by the eighths of space that its atoms lie in at rest around their middle: what has turned since
+    /// is seen. Needs positions at rest.
+    pub is_marked: bool,
     /// How much the skin hides: 1 everything, less lets lines, floor and opaque surfaces behind it shine through. Of
     /// several such skins behind each other only the nearest shows.
     pub opacity: f32,
@@ -58,6 +63,7 @@ impl Default for Surface {
             colour: SurfaceColour::default(),
             edges: Edges::default(),
             is_outlined: false,
+            is_marked: false,
             opacity: 1.0,
             is_solid: false,
         }
@@ -121,6 +127,8 @@ pub struct Sheet {
     pub map: ColourMap,
     /// Values of the first and the last colour.
     pub range: [f64; 2],
+    /// How values are spaced between them.
+    pub scale: Scale,
 }
 
 /// A translucent rectangle.
@@ -167,6 +175,16 @@ impl Surface {
     /// Whether a facet names atoms that exist and have finite positions.
     pub(super) fn is_drawable(&self, facet: &[u32; 3]) -> bool {
         facet.iter().all(|atom| self.positions.get(*atom as usize).is_some_and(|p| p.iter().all(|v| v.is_finite())))
+    }
+
+    /// Where its atoms lie at rest from their middle, µm, where that is seen by marks.
+    pub(super) fn marks(&self) -> Option<Vec<Vec3>> {
+        let count = self.positions.len();
+        if !self.is_marked || count == 0 || self.rest.len() != count {
+            return None;
+        }
+        let middle = self.rest.iter().map(|at| Vec3::from(*at)).sum::<Vec3>() / count as f64;
+        Some(self.rest.iter().map(|at| Vec3::from(*at) - middle).collect())
     }
 
     /// Whether its normals are given.

@@ -188,7 +188,12 @@ impl<'a> Shader<'a> {
         let paint: [f32; 3] = std::array::from_fn(|channel| {
             (0..3).map(|k| geometry.colours[triangle.colour[k] as usize][channel] * weights[k]).sum()
         });
-        let viewer = self.view.towards_viewer(&mix(&geometry.points));
+        let point = mix(&geometry.points);
+        let paint = match triangle.is_marked {
+            true => two_tone(paint, &mix(&geometry.marks), self.view.pixels_per_micron(&point.cast())),
+            false => paint,
+        };
+        let viewer = self.view.towards_viewer(&point);
         if geometry.cut.is_some() && triangle.side == Some(Side::Out) {
             // The flat face where a body is cut.
             return (self.cut_face(paint), 1.0);
@@ -228,6 +233,16 @@ impl<'a> Shader<'a> {
             self.gamma[(light.clamp(0.0, 1.0) * GAMMA_STEPS as f32) as usize]
         })
     }
+}
+
+/// The paint of a marked body where it lies so far from its middle at rest, µm: plain and another in turn, in eighths of space. The border
+/// is as wide as a pixel.
+fn two_tone(paint: [f32; 3], mark: &Vector3<f32>, pixels_per_micron: f64) -> [f32; 3] {
+    let side: f32 = mark.iter().map(|along| (along * pixels_per_micron as f32).clamp(-1.0, 1.0)).product();
+    let light = 0.2126 * paint[0] + 0.7152 * paint[1] + 0.0722 * paint[2];
+    // Paler, and darker where paint is pale.
+    let other = paint.map(|part| if light < 0.5 { part + 0.75 * (1.0 - part) } else { 0.3 * part });
+    std::array::from_fn(|k| paint[k] + (0.5 - 0.5 * side) * (other[k] - paint[k]))
 }
 
 /// A normal of a skin whose facet is seen: one that points away from the viewer, as where few facets go round a bend, would be lit

@@ -4,7 +4,6 @@ use super::floor::Ground;
 use super::scene::Sheet;
 use super::view::{PlaneOnScreen, View};
 use crate::Vec3;
-use crate::picture::colour::share;
 
 /// How much of the floor's shadows falls on a sheet: enough to seat the cells, not enough to falsify the colours.
 const SHADOW_SHARE: f32 = 0.55;
@@ -79,7 +78,7 @@ impl<'a> Carpet<'a> {
     pub fn colour(&self, ground: Option<&Ground>, px: f64, py: f64) -> [f32; 3] {
         let (at, _) = self.screen.meet(px, py);
         let value = self.value([at[0] / self.sides[0], at[1] / self.sides[1]]);
-        let share = share(value, self.sheet.range);
+        let share = self.sheet.scale.share(value, self.sheet.range);
         let paint = if share.is_nan() {
             self.sheet.map.at(f64::NAN).0.map(|byte| f32::from(byte) / 255.0)
         } else {

@@ -207,8 +207,37 @@ fn the_scale_bar_has_the_length_it_says() {
     let longest = (0..400).map(|y| (0..800).filter(|x| image.pixel(*x, y).0[0] < 60).count()).max().unwrap();
     // 20 pixels per µm; an end may fall inside a pixel.
     assert!((99..=101).contains(&longest), "{longest} px");
-    let auto = Overlay::default().to_svg(1280, 720, 20.0);
+    let auto = Overlay::default().to_svg(1280, 720, 20.0, None);
     assert!(auto.contains("10 µm") && auto.contains(r#"width="200.000""#), "{auto}");
+}
+
+#[test]
+fn axes_stand_between_scale_bar_and_key_and_are_left_out_where_there_is_no_space() {
+    let axes = |overlay: &Overlay, width: usize| {
+        let tripod = super::tripod::Tripod::of(&front());
+        overlay.to_svg(width, 720, 20.0, Some(&tripod)).matches("class=\"axis\"").count()
+    };
+    let names = |count: usize| Key::Names((0..count).map(|k| (format!("population {k}"), Colour([0; 3]))).collect());
+    let bar = |label: &str| Key::Bar { map: ColourMap::Viridis, low: 0.0, high: 1.0, label: label.into() };
+    let overlay = |key: Key| Overlay { key, axes: true, ..Overlay::default() };
+    // Each of three lines twice: with its rim.
+    for key in [Key::None, names(2), names(9), bar("volume (fL)")] {
+        assert_eq!(axes(&overlay(key.clone()), 1280), 6, "{key:?}");
+    }
+    assert_eq!(axes(&overlay(bar("a label that goes on and on and on and on and on and on and on")), 720), 0);
+    assert_eq!(axes(&overlay(names(9)), 500), 0);
+    let drawn = |axes: bool, width: usize| {
+        let scene = Scene { background: Background::plain(Colour([255; 3])), ..Scene::default() };
+        let image =
+            draw(&scene, &front(), &Overlay { axes, scale_bar: ScaleBar::Hidden, ..Overlay::default() }, width, 360);
+        let is_inked = |x: usize, y: usize| image.pixel(x, y) != Colour([255; 3]);
+        let all = (0..width).flat_map(|x| (0..360).map(move |y| (x, y))).filter(|(x, y)| is_inked(*x, *y));
+        all.collect::<Vec<_>>()
+    };
+    assert!(drawn(false, 640).is_empty());
+    let inked = drawn(true, 640);
+    // Within the band below the scene that is kept free.
+    assert!(inked.len() > 60 && inked.iter().all(|(x, y)| *x < 80 && *y > 360 - 35), "{:?}", inked.first());
 }
 
 #[test]

@@ -2,6 +2,7 @@
 //! for the eye alone: it passes through the atoms, keeps edges that are sharp, and comes no nearer to planes than atoms do.
 
 mod creases;
+mod flat;
 mod normals;
 mod patch;
 mod topology;
@@ -37,6 +38,8 @@ pub(super) struct Skin {
     pub normals: Vec<Vector3<f32>>,
     /// Amounts of light, linear: at the points where atoms have colours, else of the facets, or one for all.
     pub colours: Vec<[f32; 3]>,
+    /// Where the points lie at rest from the middle of the body, µm, of one that is marked; else none.
+    pub marks: Vec<Vector3<f32>>,
     pub pieces: Vec<Piece>,
 }
 
@@ -58,7 +61,10 @@ const ALL_SIDES: u8 = 0b111;
 pub(super) fn skins(scene: &Scene, view: &View) -> Vec<Skin> {
     let topologies = topologies(&scene.surfaces);
     let bare = scene.surfaces.par_iter().zip(&topologies);
-    let shapes: Vec<Shape> = bare.map(|(surface, topology)| Shape::new(surface, topology, view)).collect();
+    let mut shapes: Vec<Shape> = bare.map(|(surface, topology)| Shape::new(surface, topology, view)).collect();
+    for (shape, bends) in shapes.iter_mut().zip(flat::bends(&scene.surfaces, &topologies)) {
+        shape.bends = bends;
+    }
     let (all, wanted) = shapes.iter().fold((0, 0), |(all, wanted), shape| {
         let facets = shape.surface.facets.len();
         (all + facets, wanted + facets * usize::from(shape.parts).pow(2))
@@ -116,13 +122,15 @@ struct Shape<'a> {
     is_closed: bool,
     /// The parts that its sides should be divided into.
     parts: u16,
+    /// How much of its bend the skin has at each atom; all of it where it is empty.
+    bends: Vec<f64>,
 }
 
 impl<'a> Shape<'a> {
     fn new(surface: &'a Surface, topology: &Topology, view: &View) -> Self {
         let positions: Vec<Vec3> = surface.positions.iter().map(|position| Vec3::from(*position)).collect();
         let bearing = Bearing::of(surface, &positions, topology);
-        let mut shape = Self { surface, positions, bearing, is_closed: false, parts: 1 };
+        let mut shape = Self { surface, positions, bearing, is_closed: false, parts: 1, bends: Vec::new() };
         if !surface.has_normals() {
             shape.is_closed = topology.is_closed && shape.volume() > 0.0;
             shape.parts = shape.wanted(view);
@@ -184,17 +192,19 @@ impl<'a> Shape<'a> {
             }
             SurfaceColour::PerAtom(colours) => colours,
         };
+        let marks = surface.marks().unwrap_or_default();
         if parts == 1 && !self.bearing.creases.has_edges {
             skin.points.clone_from(&surface.positions);
             skin.normals = self.bearing.normals.iter().map(|normal| normal.cast()).collect();
             skin.colours.extend(per_atom.iter().map(|colour| colour.linear()));
+            skin.marks.extend(marks.iter().map(|mark| mark.cast()));
             let piece = |facet| Piece { corners: surface.facets[facet], facet: facet as u32, lines: ALL_SIDES, parts };
             skin.pieces.extend(self.drawable().map(piece));
             return skin;
         }
         for facet in self.drawable() {
             let is_far = view.is_some_and(|view| self.is_closed && self.is_on_far_side(facet, view));
-            self.add_facet(&mut skin, facet, if is_far { 1 } else { parts }, per_atom, planes);
+            self.add_facet(&mut skin, facet, if is_far { 1 } else { parts }, (per_atom, &marks), planes);
         }
         skin
     }
@@ -208,18 +218,32 @@ impl<'a> Shape<'a> {
     }
 
     /// Adds a facet in `parts` × `parts` pieces.
-    fn add_facet(&self, skin: &mut Skin, facet: usize, parts: u16, per_atom: &[Colour], planes: &[[Vec3; 2]]) {
+    fn add_facet(
+        &self,
+        skin: &mut Skin,
+        facet: usize,
+        parts: u16,
+        (per_atom, marks): (&[Colour], &[Vec3]),
+        planes: &[[Vec3; 2]],
+    ) {
         let corners = self.corners(facet);
         let patch = self.patch(facet, corners);
+        let marks = self.surface.facets[facet].map(|atom| marks.get(atom as usize));
+        let bends = self.surface.facets[facet].map(|atom| self.bends.get(atom as usize).copied().unwrap_or(1.0));
         let paints = self.surface.facets[facet].map(|atom| per_atom.get(atom as usize).or(per_atom.last()));
         let n = u32::from(parts);
         let first = skin.points.len() as u32;
         for j in 0..=n {
             for i in 0..=n - j {
                 let weights = [n - i - j, i, j].map(|share| f64::from(share) / f64::from(n));
-                skin.points.push(held_off(patch.point(weights), weights, &corners, planes).into());
+                let (bent, flat) = (patch.point(weights), mixed(&corners, weights));
+                let bend = weights[0] * bends[0] + weights[1] * bends[1] + weights[2] * bends[2];
+                skin.points.push(held_off(flat + bend * (bent - flat), weights, &corners, planes).into());
                 let normal = patch.normal(weights).try_normalize(1e-12).unwrap_or_else(Vec3::z);
                 skin.normals.push(normal.cast());
+                if let [Some(a), Some(b), Some(c)] = marks {
+                    skin.marks.push((a * weights[0] + b * weights[1] + c * weights[2]).cast());
+                }
                 if let [Some(a), Some(b), Some(c)] = paints {
                     let shares = weights.map(|weight| weight as f32);
                     let [a, b, c] = [a, b, c].map(|paint| paint.linear());
@@ -239,6 +263,11 @@ impl<'a> Shape<'a> {
             }
         }
     }
+}
+
+/// The point of a flat triangle with these weights of its corners.
+fn mixed(corners: &[Vec3; 3], weights: [f64; 3]) -> Vec3 {
+    corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2]
 }
 
 /// A point of a skin, no nearer to any plane than the nearest of the atoms that it lies between: cells that rest on a plane or touch one

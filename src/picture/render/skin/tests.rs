@@ -1,6 +1,6 @@
 use super::*;
 use crate::picture::render::tests::{front, sphere};
-use crate::picture::render::{Floor, Overlay, draw};
+use crate::picture::render::{Camera, Floor, Overlay, Projection, draw};
 use std::f64::consts::TAU;
 
 fn view() -> View {
@@ -228,4 +228,41 @@ fn a_block_on_a_floor_has_each_face_in_one_light() {
     // Parallel rays: each face has one colour but for its outline.
     let faces: usize = counts.iter().rev().take(3).sum();
     assert!(faces > 15_000, "{faces} pixels in the three commonest colours");
+}
+
+#[test]
+fn a_ball_on_an_open_sheet_does_not_bulge_through_it() {
+    let ball = sphere([0.0, 0.0, 0.0], 5.0, 1);
+    // Turned so that a facet is its lowest part, and put onto the sheet.
+    let facet = ball.facets[0].map(|atom| Vec3::from(ball.positions[atom as usize]));
+    let down = -(facet[1] - facet[0]).cross(&(facet[2] - facet[0])).normalize();
+    let down = if down.dot(&facet[0]) > 0.0 { down } else { -down };
+    let turn = nalgebra::Rotation3::rotation_between(&down, &-Vec3::z()).unwrap_or_else(nalgebra::Rotation3::identity);
+    let lowest = ball.positions.iter().map(|at| (turn * Vec3::from(*at)).z).fold(f64::INFINITY, f64::min);
+    let lie = |at: &[f64; 3]| <[f64; 3]>::from(turn * Vec3::from(*at) + Vec3::new(0.3, 0.2, 0.01 - lowest));
+    let ball = Surface { positions: ball.positions.iter().map(lie).collect(), ..ball };
+    let (mut positions, mut facets) = (Vec::new(), Vec::new());
+    for n in 0..11_u32 {
+        positions.extend((0..11).map(|m| [2.0 * f64::from(n) - 10.0, 2.0 * f64::from(m) - 10.0, 0.0]));
+    }
+    for at in (0..110_u32).filter(|at| at % 11 != 10) {
+        facets.extend([[at, at + 11, at + 12], [at, at + 12, at + 1]]);
+    }
+    let sheet = Surface::new(positions, facets, Colour([90; 3]));
+    let camera = Camera {
+        eye: [0.0, -40.0, 4.0],
+        target: [0.0, 0.0, 4.0],
+        up: [0.0, 0.0, 1.0],
+        projection: Projection::Orthographic { height: 12.0 },
+        shift: [0.0; 2],
+    };
+    let view = View::new(&camera, 800, 800);
+    let least = |surfaces: Vec<Surface>| {
+        let ball = surfaces.len() - 1;
+        let skins = skins(&Scene { surfaces, ..Scene::default() }, &view);
+        skins[ball].points.iter().map(|at| at[2]).fold(f64::INFINITY, f64::min)
+    };
+    let (alone, lying) = (least(vec![ball.clone()]), least(vec![sheet, ball]));
+    assert!(alone < -0.02, "the skin of a ball alone is below its facets: {alone}");
+    assert!(lying > 0.0, "{lying}");
 }
