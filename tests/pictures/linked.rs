@@ -15,12 +15,12 @@ integrator = { max_step = "1 s" }
 every = "2 s"
 [cells.a]
 mesh = { shape = "icosphere", radius = "5 um", level = 0 }
-placement = { at = [["-6 um", "0 um", "0 um"], ["6 um", "0 um", "0 um"], ["0 um", "40 um", "0 um"]] }
+placement = { at = [["-6 um", "0 um", "0 um"], ["6 um", "0 um", "0 um"], ["0 um", "80 um", "0 um"]] }
 [cells.a.mechanics]
 drag = "20 pN s/um"
 shape_memory = { stiffness = "6 pN/um" }
 [cells.a.motility]
-attraction = { to = ["0 um", "0 um", "0 um"], stiffness = "0.02 pN/um" }
+attraction = { to = ["0 um", "0 um", "0 um"], stiffness = "0.1 pN/um" }
 [contact]
 model = "links"
 [[contact.between]]
