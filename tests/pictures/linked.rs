@@ -67,5 +67,5 @@ fn cells_that_are_linked_are_recorded_and_drawn() {
     let scene = Scene::open(&path).unwrap();
     let last = counts.len() - 1;
     let Some(Answer::Bytes(bytes)) = scene.answer(&format!("lines/{last}/linked")).unwrap() else { panic!("no lines") };
-    assert_eq!(bytes.len(), 4 * 7);
+    assert_eq!(bytes.len(), 4 + 4 * 7, "how many, and seven numbers for each");
 }
