@@ -109,7 +109,9 @@ pub fn scene_of(snapshot: &Snapshot, look: &Look, framing: &Framing) -> Scene {
     for ([from, to], tension) in snapshot.fibres.into_iter().flatten().filter(|(_, tension)| *tension > 0.0) {
         // A bundle's cross-section goes with what it pulls with.
         let share = (tension / framing.strongest.max(*tension)).sqrt();
-        scene.add_line(*from, *to, (0.002 + 0.003 * share) * typical, FIBRE);
+        let radius = (0.002 + 0.003 * share) * typical;
+        let [from, to] = shortened([*from, *to], 2.0 * radius);
+        scene.add_line(from, to, radius, FIBRE);
     }
     for ([from, to], number) in snapshot.links.into_iter().flatten() {
         let share = (number / framing.most_links.max(*number)).sqrt();
@@ -130,6 +132,13 @@ pub fn scene_of(snapshot: &Snapshot, look: &Look, framing: &Framing) -> Scene {
     let coloured = |sheet: &Sheet| Sheet { map, range, scale, ..sheet.clone() };
     scene.sheet = snapshot.field.map(coloured);
     scene
+}
+
+/// A line that ends so much before its ends, at most a quarter of it: one that is thick would stand out of the skin that it ends at.
+fn shortened([from, to]: [[f64; 3]; 2], by: f64) -> [[f64; 3]; 2] {
+    let (a, b) = (Vec3::from(from), Vec3::from(to));
+    let share = (by / (b - a).norm().max(1e-300)).min(0.25);
+    [(a + share * (b - a)).into(), (b - share * (b - a)).into()]
 }
 
 /// Whether every side of a facet is one of another, which runs along it the other way.

@@ -1,5 +1,6 @@
 //! What the colours of a picture show: the type of a cell, a series of the cells, or a quantity of the atoms.
 
+use super::field_view::with_unit;
 use super::plots;
 use super::quantities::AtomQuantity;
 use crate::error::{Error, Fault, Result};
@@ -105,8 +106,7 @@ impl Shown {
             Self::Atoms(quantity) => quantity.label().to_owned(),
             Self::Membrane(name) => {
                 let known = result.layout().membranes.iter().find(|membrane| membrane.name == *name);
-                let unit = known.map(|membrane| membrane.unit.as_str()).filter(|unit| !unit.is_empty());
-                unit.map_or(name.clone(), |unit| format!("{name} ({unit})"))
+                known.map_or_else(|| name.clone(), |membrane| with_unit(name, &membrane.unit))
             }
             Self::Cells(name) => plots::label_of(result, name),
         }

@@ -128,7 +128,7 @@ fn what_is_hidden_is_neither_seen_nor_named_nor_makes_space() {
     let seen = |hidden: &[&str], colour_by: &str| {
         let hidden = hidden.iter().map(ToString::to_string).collect();
         let picture = Picture { colour_by: colour_by.into(), ..picture.clone() };
-        still_as(&file, &document, &picture, &Display { hidden, ..Display::default() })
+        still_as(&file, &document, &picture, &Display { hidden, axes: false, ..Display::default() })
     };
     let [both, one] = [&[][..], &["stiff"]].map(|hidden| blue_and_red(&seen(hidden, "type").unwrap()));
     assert!(both[0] > 1000 && both[1] > 1000, "{both:?}");

@@ -137,7 +137,7 @@ export class Obstacles {
     this.group = new THREE.Group();
     this.obstacles = obstacles;
     this.meshes = obstacles.map((obstacle) => (obstacle.profile.length ? toolOf(obstacle, light) : planeOf(obstacle, box, dark)));
-    this.group.add(...this.meshes);
+    this.meshes.forEach((mesh) => this.group.add(mesh));
     /** What cells stand on, of planes that look up the one that does most. */
     this.floor = this.meshes.map((mesh) => mesh.userData.floor).filter(Boolean).sort((one, other) => other.normal.z - one.normal.z)[0];
   }

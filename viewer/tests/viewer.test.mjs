@@ -177,7 +177,7 @@ placement = { at = [["-6 um", "0 um", "0 um"], ["6 um", "0 um", "0 um"]] }
 drag = "20 pN s/um"
 shape_memory = { stiffness = "6 pN/um" }
 [cells.a.motility]
-attraction = { to = ["0 um", "0 um", "0 um"], stiffness = "0.02 pN/um" }
+attraction = { to = ["0 um", "0 um", "0 um"], stiffness = "0.1 pN/um" }
 [contact]
 model = "links"
 [[contact.between]]

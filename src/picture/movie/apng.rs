@@ -39,6 +39,8 @@ impl<W: Write> AnimatedPng<W> {
         encoder.set_blend_op(png::BlendOp::Source)?;
         let mut writer = encoder.write_header()?;
         self.frames.take(|number, Taken { image, area, .. }| {
+            // Sides are checked against where the frame before stood.
+            writer.reset_frame_position()?;
             writer.set_frame_dimension(area.width() as u32, area.height() as u32)?;
             writer.set_frame_position(area.left as u32, area.top as u32)?;
             writer.set_frame_delay(self.delays[number], PER_SECOND as u16)?;

@@ -225,7 +225,6 @@ fn axes_stand_between_scale_bar_and_key_and_are_left_out_where_there_is_no_space
         assert_eq!(axes(&overlay(key.clone()), 1280), 6, "{key:?}");
     }
     assert_eq!(axes(&overlay(bar("a label that goes on and on and on and on and on and on and on")), 720), 0);
-    assert_eq!(axes(&overlay(names(9)), 500), 0);
     let drawn = |axes: bool, width: usize| {
         let scene = Scene { background: Background::plain(Colour([255; 3])), ..Scene::default() };
         let image =

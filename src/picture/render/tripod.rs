@@ -46,7 +46,20 @@ impl Tripod {
             [x * far / length, y * far / length]
         };
         if !Self::is_end_on(end) {
-            return away([end[0], end[1]], LONG * end[0].hypot(end[1]) + TO_LETTER);
+            let plain = |end: &[f64; 3]| away([end[0], end[1]], LONG * end[0].hypot(end[1]) + TO_LETTER);
+            let (own, length) = (plain(end), end[0].hypot(end[1]));
+            // Where a longer line has its letter, that of a shorter one stands beside its end.
+            let hides = |other: &&[f64; 3]| {
+                let ([x, y], longer) = (plain(other), other[0].hypot(other[1]) > length);
+                longer && (x - own[0]).hypot(y - own[1]) < 12.0
+            };
+            if self.ends.iter().any(|other| hides(&other)) {
+                return [
+                    own[0] - TO_LETTER * (end[1] / length + end[0] / length),
+                    own[1] + TO_LETTER * (end[0] - end[1]) / length,
+                ];
+            }
+            return own;
         }
         // Where the others are not.
         let sum = |k: usize| self.ends.iter().map(|end| end[k]).sum::<f64>() - end[k];

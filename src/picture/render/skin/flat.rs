@@ -6,18 +6,19 @@ use crate::Vec3;
 use crate::picture::render::camera::Bounds;
 use crate::picture::render::scene::Surface;
 
-/// An atom whose nearest one of another surface is nearer than this, in mean edges of that one, has no bent skin around it: where surfaces
-/// touch, an atom is at most 0.6 edges away from the corners of a facet.
-const NEAR: f64 = 0.9;
+/// An atom that is nearer to another surface than this, in mean edges of that one, has no bent skin around it: skins of meshes that are
+/// worth a picture bulge by less than a tenth of an edge.
+const NEAR: f64 = 0.1;
 /// Beyond this its skin is as bent as that of others.
-const FAR: f64 = 1.6;
+const FAR: f64 = 0.35;
+/// How far the nearest atom of that surface may be, in its edges: how far the surface is follows from the plane through that atom.
+const REACH: f64 = 1.0;
 
 /// How much of its bend the skin has at each atom of each surface, from 0 to 1; empty where it has all of it everywhere.
 pub(super) fn bends(surfaces: &[Surface], topologies: &[impl AsRef<Topology>]) -> Vec<Vec<f64>> {
     let mut bends = vec![Vec::new(); surfaces.len()];
     let is_bent = |surface: &Surface| !surface.has_normals() && !surface.facets.is_empty();
-    let all = std::env::var_os("PSEUDOPOD_FLAT").is_some();
-    for sheet in (0..surfaces.len()).filter(|n| is_bent(&surfaces[*n]) && (all || !topologies[*n].as_ref().is_closed)) {
+    for sheet in (0..surfaces.len()).filter(|n| is_bent(&surfaces[*n]) && !topologies[*n].as_ref().is_closed) {
         for other in (0..surfaces.len()).filter(|n| *n != sheet && is_bent(&surfaces[*n])) {
             flatten(&surfaces[sheet], &surfaces[other], &mut bends[sheet]);
             flatten(&surfaces[other], &surfaces[sheet], &mut bends[other]);
@@ -33,21 +34,42 @@ fn flatten(surface: &Surface, other: &Surface, bends: &mut Vec<f64>) {
         return;
     };
     let is_in = |bounds: &Bounds, at: &[f64; 3]| {
-        (0..3).all(|k| at[k] >= bounds.low[k] - FAR * edge && at[k] <= bounds.high[k] + FAR * edge)
+        (0..3).all(|k| at[k] >= bounds.low[k] - REACH * edge && at[k] <= bounds.high[k] + REACH * edge)
     };
-    let near: Vec<Vec3> = other.positions.iter().filter(|at| is_in(&own, at)).map(|at| Vec3::from(*at)).collect();
-    if near.is_empty() {
-        return;
-    }
+    let normals = normals(other);
+    let near: Vec<(Vec3, Vec3)> = other
+        .positions
+        .iter()
+        .zip(normals)
+        .filter(|(at, _)| is_in(&own, at))
+        .map(|(at, normal)| (Vec3::from(*at), normal))
+        .collect();
     for (atom, at) in surface.positions.iter().enumerate().filter(|(_, at)| is_in(&there, at)) {
         let at = Vec3::from(*at);
-        let nearest = near.iter().map(|near| (near - at).norm_squared()).fold(f64::INFINITY, f64::min).sqrt();
-        let share = ((nearest / edge - NEAR) / (FAR - NEAR)).clamp(0.0, 1.0);
+        let away = |near: &&(Vec3, Vec3)| (near.0 - at).norm_squared();
+        let Some((nearest, normal)) = near.iter().min_by(|one, other| away(one).total_cmp(&away(other))) else {
+            return;
+        };
+        if (nearest - at).norm() > REACH * edge {
+            continue;
+        }
+        let gap = (nearest - at).dot(normal).abs() / edge;
+        let share = ((gap - NEAR) / (FAR - NEAR)).clamp(0.0, 1.0);
         if share < 1.0 {
             bends.resize(surface.positions.len(), 1.0);
             bends[atom] = bends[atom].min(share);
         }
     }
+}
+
+/// The unit normal of a surface at each atom, the mean over the facets around by their areas.
+fn normals(surface: &Surface) -> Vec<Vec3> {
+    let mut sums = vec![Vec3::zeros(); surface.positions.len()];
+    for facet in surface.facets.iter().filter(|facet| surface.is_drawable(facet)) {
+        let [a, b, c] = facet.map(|atom| Vec3::from(surface.positions[atom as usize]));
+        facet.iter().for_each(|atom| sums[*atom as usize] += (b - a).cross(&(c - a)));
+    }
+    sums.into_iter().map(|sum| sum.try_normalize(1e-300).unwrap_or_default()).collect()
 }
 
 /// The mean length of the sides of the facets of a surface, µm.
