@@ -122,6 +122,9 @@ pub enum Mesh {
         /// Refinement: 12, 42, 162, 642, 2562 … atoms.
         #[schemars(range(min = 0, max = 6))]
         level: u8,
+        /// Where its facets are finest; all alike when absent.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        finest: Option<Finest>,
     },
     /// A sphere refined from an octahedron; 66 atoms with 4 divisions.
     Octasphere {
@@ -218,13 +221,14 @@ pub enum Mesh {
     },
 }
 
-/// Where the parts of a block are finest.
+/// Where the parts of a block or the facets of a sphere are finest.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Finest {
-    /// A point within it.
+    /// A point within a block; of a sphere the point of its surface that is nearest, any but its centre.
     pub at: [Length; 3],
-    /// How many times as long parts are at the end that is farthest; between they grow with the distance along the axis.
+    /// How many times as long parts are at the end that is farthest; between they grow with the distance along the axis. How many times as long
+    /// edges of a sphere are opposite; between the map is conformal.
     #[schemars(range(min = 1, max = 100))]
     pub ratio: f64,
 }

@@ -13,7 +13,7 @@
 //!     shape_memory: Some(ShapeMemory::of_modulus(LineStiffness::new(5.0))),
 //!     ..Mechanics::default()
 //! };
-//! let mut cell = CellType::new(Mesh::Icosphere { radius: Length::new(5.0), level: 2 }, mechanics);
+//! let mut cell = CellType::new(Mesh::Icosphere { radius: Length::new(5.0), level: 2, finest: None }, mechanics);
 //! cell.applied.loads.push(Load {
 //!     name: "pull".into(),
 //!     selection: Selection::Cap(Cap { direction: [1.0, 0.0, 0.0], extent: CapExtent::Number(5) }),

@@ -4,6 +4,7 @@ mod boxes;
 mod check;
 mod curvature;
 mod export;
+mod grading;
 mod import;
 mod lathe;
 mod measure;
@@ -25,6 +26,7 @@ pub use boxes::box_surface;
 pub use check::{Boundary, LEAST_FACET_QUALITY, MeshFault, SurfaceRules, check_surface};
 pub use curvature::{gaussian_curvature, mean_curvature, mixed_areas};
 pub use export::{OfAtoms, export_surface, write_obj, write_ply, write_stl};
+pub use grading::grade_sphere;
 pub use import::{read_checked_surface, read_surface};
 pub use lathe::lathe;
 pub use measure::{

@@ -83,7 +83,7 @@ impl Simulation {
     ///     shape_memory: Some(ShapeMemory::of_modulus(LineStiffness::new(5.0))),
     ///     ..Mechanics::default()
     /// };
-    /// let mut cell = CellType::new(Mesh::Icosphere { radius: Length::new(5.0), level: 1 }, mechanics);
+    /// let mut cell = CellType::new(Mesh::Icosphere { radius: Length::new(5.0), level: 1, finest: None }, mechanics);
     /// cell.applied.loads.push(Load {
     ///     name: "pull".into(),
     ///     selection: Selection::Cap(Cap { direction: [1.0, 0.0, 0.0], extent: CapExtent::Number(3) }),

@@ -27,7 +27,21 @@ pub fn surface(document: &Document, name: &str, cell: &CellType, faults: &mut Ve
     };
     let mut plain = match &cell.mesh {
         Mesh::RedCell { diameter, level } => geometry::red_cell(diameter.value(), u32::from(*level)),
-        Mesh::Icosphere { radius, level } => geometry::icosphere(radius.value(), u32::from(*level)),
+        Mesh::Icosphere { radius, level, finest } => {
+            let mut sphere = geometry::icosphere(radius.value(), u32::from(*level));
+            if let Some(finest) = finest {
+                let at = Vec3::from(finest.at.map(|x| x.value()));
+                if at.norm() == 0.0 {
+                    let message = format!("the facets of `cells.{name}.mesh` cannot be finest at its centre");
+                    let help = "give a point of its surface, from its centre: the nearest is meant";
+                    let key = format!("cells.{name}.mesh.finest.at");
+                    faults.push(refused(document, &key, "the centre of the sphere", message, help));
+                    return None;
+                }
+                geometry::grade_sphere(&mut sphere.positions, &at, finest.ratio);
+            }
+            sphere
+        }
         Mesh::Octasphere { radius, divisions } => geometry::octasphere(radius.value(), *divisions),
         Mesh::Box { size, divisions } => geometry::box_surface(size.map(|x| x.value()), *divisions),
         Mesh::Sheet { size, divisions } => {
