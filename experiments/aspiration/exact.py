@@ -43,10 +43,12 @@ def outer_radius(tongue):
 with open("data/exact.csv", "w") as file:
     file.write("pressure_Pa,reach_um,outer_radius_um\n")
     for row in range(41):
+        # At last half a ball as wide as the mouth, which more suction draws in.
         tongue = MOUTH + (RADIUS - MOUTH) * ((40 - row) / 40) ** 2
         outer = outer_radius(tongue)
         pressure = -2 * TENSION * (1 / tongue - 1 / outer)
-        # The run ends at 18 Pa.
-        if pressure > -18:
-            reach = touching(tongue)[0] + tongue
-            file.write(f"{min(pressure, 0) or 0:.4f},{reach:.4f},{outer:.4f}\n")
+        reach = touching(tongue)[0] + tongue
+        file.write(f"{min(pressure, 0) or 0:.4f},{reach:.4f},{outer:.4f}\n")
+
+with open("data/critical.csv", "w") as file:
+    file.write(f"reach_um,pressure_Pa\n{reach:.4f},{pressure:.4f}\n")
