@@ -50,3 +50,9 @@ with open("data/exact.csv", "w") as file:
         if pressure > -18:
             reach = touching(tongue)[0] + tongue
             file.write(f"{min(pressure, 0) or 0:.4f},{reach:.4f},{outer:.4f}\n")
+
+# Where the tongue is half a ball as wide as the mouth: more suction draws the cell in.
+outer = outer_radius(MOUTH)
+pressure = -2 * TENSION * (1 / MOUTH - 1 / outer)
+with open("data/critical.csv", "w") as file:
+    file.write(f"reach_um,pressure_Pa\n{touching(MOUTH)[0] + MOUTH:.4f},{pressure:.4f}\n")
