@@ -22,6 +22,8 @@ pub fn linked(result: &ResultFile, frame: usize, cells: &[Cell], positions: &[[f
 ///
 /// # Errors
 /// A damaged file, or a result without contacts.
+// Pictures draw none: only the page does.
+#[cfg(feature = "view")]
 pub fn touching(result: &ResultFile, frame: usize, cells: &[Cell], positions: &[[f64; 3]]) -> Result<Vec<Joint>> {
     let pairs = result.pairs(frame)?.into_iter().map(|pair| ([pair.cell, pair.other], pair.area));
     Ok(between_centres(pairs, result.layout(), cells, positions))
