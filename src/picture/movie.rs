@@ -13,8 +13,7 @@ mod apng;
 mod gif_frames;
 mod kept;
 
-use apng::AnimatedPng;
-use gif_frames::GifFrames;
+use kept::Kept;
 
 /// A movie that is being written, frame by frame.
 pub struct Movie {
@@ -35,20 +34,39 @@ pub struct Written {
 }
 
 enum Kind {
-    Gif(GifFrames<BufWriter<File>>),
-    AnimatedPng(AnimatedPng<BufWriter<File>>),
+    /// Written once all frames are there.
+    Whole { format: Format, file: BufWriter<File>, frames: Kept },
     /// The encoder is started with the first frame, which tells the size.
-    Ffmpeg {
-        program: PathBuf,
-        child: Option<Child>,
-    },
+    Ffmpeg { program: PathBuf, child: Option<Child> },
     /// Numbered files in a folder.
     Folder,
     /// A file for one picture, else numbered files in a folder; the first picture waits until it is known whether it stays alone.
-    Sequence {
-        folder: PathBuf,
-        waiting: Option<Image>,
-    },
+    Sequence { folder: PathBuf, waiting: Option<Image> },
+}
+
+/// A film that is one file which we write.
+#[derive(Clone, Copy)]
+enum Format {
+    Gif,
+    AnimatedPng,
+}
+
+impl Format {
+    /// How long the frame of this number, counted from 1, stays, in parts of a second that the format counts in.
+    fn delay(self, frame: usize, fps: f64) -> u16 {
+        match self {
+            // Viewers play delays below 2 as 10, hence the lower limit.
+            Self::Gif => delay(frame, fps, gif_frames::PER_SECOND).clamp(2, 6000),
+            Self::AnimatedPng => delay(frame, fps, apng::PER_SECOND).max(1),
+        }
+    }
+
+    fn write(self, frames: &Kept, file: &mut impl Write) -> std::io::Result<()> {
+        match self {
+            Self::Gif => gif_frames::write(frames, file),
+            Self::AnimatedPng => apng::write(frames, file),
+        }
+    }
 }
 
 impl Movie {
@@ -76,10 +94,8 @@ impl Movie {
         let kind = match (ending.as_str(), ffmpeg) {
             ("gif" | "apng", _) => {
                 let file = BufWriter::new(File::create(path).map_err(|error| unwritable(path, &error))?);
-                match ending.as_str() {
-                    "gif" => Kind::Gif(GifFrames::new(file)),
-                    _ => Kind::AnimatedPng(AnimatedPng::new(file)),
-                }
+                let format = if ending == "gif" { Format::Gif } else { Format::AnimatedPng };
+                Kind::Whole { format, file, frames: Kept::default() }
             }
             ("mp4" | "webm", Some(program)) => {
                 // ffmpeg's own words for a path it cannot write come late and long.
@@ -118,14 +134,9 @@ impl Movie {
         }
         self.frames += 1;
         match &mut self.kind {
-            Kind::Gif(gif) => {
-                // Viewers play delays below 2 as 10, hence the lower limit.
-                let delay = delay(self.frames, self.fps, gif_frames::PER_SECOND).clamp(2, 6000);
-                gif.add(image, delay).map_err(|error| unwritable(&self.path, &error))
-            }
-            Kind::AnimatedPng(film) => {
-                let delay = delay(self.frames, self.fps, apng::PER_SECOND).max(1);
-                film.add(image, delay).map_err(|error| unwritable(&self.path, &error))
+            Kind::Whole { format, frames, .. } => {
+                let delay = format.delay(self.frames, self.fps);
+                frames.add(image, delay).map_err(|error| unwritable(&self.path, &error))
             }
             Kind::Folder => {
                 std::fs::create_dir_all(&self.path).map_err(|error| unwritable(&self.path, &error))?;
@@ -161,8 +172,10 @@ impl Movie {
     pub fn finish(self) -> Result<Written> {
         let Self { path, frames, kind, .. } = self;
         match kind {
-            Kind::Gif(gif) => gif.finish().map_err(|error| unwritable(&path, &error))?,
-            Kind::AnimatedPng(film) => film.finish().map_err(|error| unwritable(&path, &error))?,
+            Kind::Whole { format, mut file, frames } => {
+                let written = format.write(&frames, &mut file).and_then(|()| file.flush());
+                written.map_err(|error| unwritable(&path, &error))?;
+            }
             Kind::Folder => {}
             Kind::Ffmpeg { child, .. } => finish_ffmpeg(child, &path)?,
             Kind::Sequence { waiting: Some(only), .. } => only.save_png(&path)?,

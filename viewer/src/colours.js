@@ -32,8 +32,7 @@ export class Colours {
 
   /** The ends of a scale: those that the document says, else those of all frames. */
   async endsOf(name, given) {
-    const ends = given ?? await json(this.viewer.source, `range/${name}`) ?? [0, 1];
-    return ends;
+    return given ?? await json(this.viewer.source, `range/${name}`) ?? [0, 1];
   }
 
   /** Those of a field, whose colours may count in powers of ten. */

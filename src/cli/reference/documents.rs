@@ -10,8 +10,7 @@ type Object = Map<String, Json>;
 /// The page of a document: a section for each table, in the order in which a document is read, with its keys, what they hold, what is so
 /// when they are absent, and what they mean.
 pub(super) fn page(title: &str, introduction: &str, schema: &Json) -> String {
-    let mut pages = Pages { root: schema, sections: Vec::new(), found: BTreeMap::new() };
-    pages.add("", schema.as_object().expect("a schema is an object"), None);
+    let pages = Pages::of(schema);
     let mut text = format!("# {title}\n\n{introduction}\n");
     for section in &pages.sections {
         pages.write(&mut text, section);
@@ -36,6 +35,12 @@ struct Pages<'a> {
 }
 
 impl<'a> Pages<'a> {
+    fn of(schema: &'a Json) -> Self {
+        let mut pages = Self { root: schema, sections: Vec::new(), found: BTreeMap::new() };
+        pages.add("", schema.as_object().expect("a schema is an object"), None);
+        pages
+    }
+
     /// Adds the section of a table, and of all that stand in it; one that is there already is told to stand here, too.
     fn add(&mut self, path: &str, schema: &'a Object, name: Option<&'a str>) {
         if let Some(number) = name.and_then(|name| self.found.get(name)) {
@@ -319,12 +324,18 @@ mod tests {
         assert!(page.contains("| `until` | a time, `10 s`, more than 0 | must be there |"), "{page}");
         assert!(page.contains("`implicit`: Linearly implicit"), "words are told one by one");
         assert!(page.contains("**`kind = \"slope\"`**"), "each kind of measure is told");
-        let defined = schema["$defs"].as_object().expect("definitions");
-        for (name, definition) in defined {
-            for (key, _) in
-                keys_of(definition.as_object().expect("an object")).filter(|(_, one)| !one.contains_key("const"))
-            {
-                assert!(page.contains(&format!("| `{key}` |")), "{name}.{key} has no row");
+        let pages = Pages::of(&schema);
+        for (name, definition) in schema["$defs"].as_object().expect("definitions") {
+            let is_told = pages.found.contains_key(name.as_str());
+            assert!(is_told || !is_table(definition.as_object().expect("an object")), "{name} has no section");
+        }
+        for section in &pages.sections {
+            let mut text = String::new();
+            pages.write(&mut text, section);
+            for (key, value) in keys_of(section.schema) {
+                // What tells a variant stands above its rows.
+                let chosen = value.get("const").is_some_and(|only| text.contains(&format!("**`{key} = {only}`**")));
+                assert!(chosen || text.contains(&format!("\n| `{key}` | ")), "{}.{key} has no row", section.path);
             }
         }
     }

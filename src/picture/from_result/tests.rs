@@ -3,6 +3,7 @@
 use super::*;
 use crate::output::{Cell, Layout, Obstacle};
 use crate::picture::ColourMap;
+use crate::picture::joined::Joint;
 use crate::picture::render::Insets;
 
 const CELLS: [Cell; 2] = [Cell { id: 0, kind: 0, parent: None }, Cell { id: 1, kind: 1, parent: None }];
@@ -25,14 +26,13 @@ fn two_cells() -> (Layout, Vec<[f64; 3]>) {
     (layout, positions)
 }
 
-#[test]
-fn types_and_numbers_colour_the_cells() {
-    let (layout, positions) = two_cells();
-    let mut snapshot = Snapshot {
-        layout: &layout,
+/// An instant with these positions: the colours of types, and nothing besides.
+fn instant<'a>(layout: &'a Layout, positions: &'a [[f64; 3]]) -> Snapshot<'a> {
+    Snapshot {
+        layout,
         cells: &CELLS,
-        positions: &positions,
-        time: 3.0,
+        positions,
+        time: 0.0,
         values: Values::Type,
         arrows: &[],
         fibres: None,
@@ -40,7 +40,13 @@ fn types_and_numbers_colour_the_cells() {
         field: None,
         rest: &[],
         gone: &[],
-    };
+    }
+}
+
+#[test]
+fn types_and_numbers_colour_the_cells() {
+    let (layout, positions) = two_cells();
+    let mut snapshot = Snapshot { time: 3.0, ..instant(&layout, &positions) };
     let look = Look::default();
     let mut framing = Framing::new(&look);
     framing.include(&snapshot);
@@ -70,20 +76,7 @@ fn every_frame_of_a_run_has_its_time_in_the_same_unit() {
     let (layout, positions) = two_cells();
     let look = Look::default();
     let stamp = |time: f64| {
-        let (positions, values) = (&positions, Values::Type);
-        let snapshot = Snapshot {
-            layout: &layout,
-            cells: &CELLS,
-            positions,
-            time,
-            values,
-            arrows: &[],
-            fibres: None,
-            links: None,
-            field: None,
-            rest: &[],
-            gone: &[],
-        };
+        let snapshot = Snapshot { time, ..instant(&layout, &positions) };
         // A picture of one frame alone: the others have not been seen.
         let mut framing = Framing::new(&look).lasting(600.0);
         framing.include(&snapshot);
@@ -98,23 +91,10 @@ fn the_camera_shows_all_frames() {
     let (layout, positions) = two_cells();
     let moved: Vec<[f64; 3]> = positions.iter().map(|p| [p[0] + 40.0, p[1], p[2]]).collect();
     let look = Look::default();
-    let still = |positions| Snapshot {
-        layout: &layout,
-        cells: &CELLS,
-        positions,
-        time: 0.0,
-        values: Values::Type,
-        arrows: &[],
-        fibres: None,
-        links: None,
-        field: None,
-        rest: &[],
-        gone: &[],
-    };
     let (mut one, mut both) = (Framing::new(&look), Framing::new(&look));
-    one.include(&still(&positions));
-    both.include(&still(&positions));
-    both.include(&still(&moved));
+    one.include(&instant(&layout, &positions));
+    both.include(&instant(&layout, &positions));
+    both.include(&instant(&layout, &moved));
     let across =
         |framing: &Framing| 720.0 / framing.camera(&look, 16.0 / 9.0, Insets::default()).pixels_per_micron(720);
     assert!(across(&both) > 2.0 * across(&one), "{} {}", across(&both), across(&one));
@@ -129,19 +109,7 @@ fn a_marked_body_is_seen_to_turn_by_eighths_of_it() {
     let turned: Vec<[f64; 3]> = positions.iter().map(|p| [p[2] - 5.0, p[1], 5.0 - p[0]]).collect();
     let look = Look::default();
     let seen = |positions: &[[f64; 3]], marked: &[usize]| {
-        let snapshot = Snapshot {
-            layout: &layout,
-            cells: &CELLS,
-            positions,
-            time: 0.0,
-            values: Values::Type,
-            arrows: &[],
-            fibres: None,
-            links: None,
-            field: None,
-            rest: &rest,
-            gone: &[],
-        };
+        let snapshot = Snapshot { rest: &rest, ..instant(&layout, positions) };
         let look = Look { marked: marked.to_vec(), ..look.clone() };
         let scene = scene_of(&snapshot, &look, &Framing::new(&look));
         let camera = crate::picture::Camera {
@@ -164,6 +132,30 @@ fn a_marked_body_is_seen_to_turn_by_eighths_of_it() {
 }
 
 #[test]
+fn links_are_lines_from_centre_to_centre() {
+    let (layout, positions) = two_cells();
+    let look = Look { opacity: Some(0.35), ..Look::default() };
+    let (from, to) = ([0.0, 0.0, 5.0], [12.0, 0.0, 5.0]);
+    let tubes = |numbers: &[f64]| {
+        let links: Vec<Joint> = numbers.iter().map(|number| ([from, to], *number)).collect();
+        let snapshot = Snapshot { links: Some(&links), ..instant(&layout, &positions) };
+        let mut framing = Framing::new(&look);
+        framing.include(&snapshot);
+        scene_of(&snapshot, &look, &framing).strokes.positions
+    };
+    assert!(tubes(&[]).is_empty());
+    let most = tubes(&[4.0]);
+    let ends = most.iter().map(|p| p[0]).fold([f64::MAX, f64::MIN], |[low, high], x| [low.min(x), high.max(x)]);
+    assert!((ends[0] - from[0]).abs() < 1e-9 && (ends[1] - to[0]).abs() < 1e-9, "{ends:?}");
+    // The radius goes with the root of the number.
+    let radius = |tube: &[[f64; 3]]| (Vec3::from(tube[0]) - Vec3::from(from)).norm();
+    let both = tubes(&[1.0, 4.0]);
+    let (few, many) = both.split_at(most.len());
+    assert_eq!(many, most);
+    assert!(radius(few) < 0.8 * radius(many) && radius(few) > 0.5 * radius(many), "{} {}", radius(few), radius(many));
+}
+
+#[test]
 #[ignore = "gallery: writes pictures for a person to judge into PICTURES or the temporary folder"]
 fn gallery_of_frames() {
     let folder = std::env::var_os("PICTURES").map_or_else(std::env::temp_dir, std::path::PathBuf::from);
@@ -173,19 +165,8 @@ fn gallery_of_frames() {
         .map(|k| positions.iter().map(|p| [p[0] + 0.2 * f64::from(k) * (6.0 - p[0]).signum(), p[1], p[2]]).collect())
         .collect();
     let heights: Vec<f64> = positions.iter().map(|p| p[2]).collect();
-    let snapshot = |k: usize| Snapshot {
-        layout: &layout,
-        cells: &CELLS,
-        positions: &frames[k],
-        time: k as f64,
-        values: Values::Atoms(&heights),
-        arrows: &[],
-        fibres: None,
-        links: None,
-        field: None,
-        rest: &[],
-        gone: &[],
-    };
+    let snapshot =
+        |k: usize| Snapshot { time: k as f64, values: Values::Atoms(&heights), ..instant(&layout, &frames[k]) };
     let mut framing = Framing::new(&look);
     (0..20).for_each(|k| framing.include(&snapshot(k)));
     let mut movie = crate::picture::Movie::create(&folder.join("approach.gif"), 10.0).unwrap();

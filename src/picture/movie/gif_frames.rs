@@ -6,7 +6,6 @@
 use std::io::Write;
 
 use super::kept::{Kept, Taken};
-use crate::picture::Image;
 
 /// Hundredths of a second.
 pub(super) const PER_SECOND: f64 = 100.0;
@@ -15,60 +14,41 @@ const BITS: u32 = 6;
 /// Palette entry that leaves the frame before visible.
 const UNCHANGED: u8 = 255;
 
-/// Writes frames of one size.
-pub(super) struct GifFrames<W: Write> {
-    target: W,
-    frames: Kept,
-    delays: Vec<u16>,
-}
-
-impl<W: Write> GifFrames<W> {
-    pub fn new(target: W) -> Self {
-        Self { target, frames: Kept::default(), delays: Vec::new() }
-    }
-
-    /// Adds a frame that stays for `delay` hundredths of a second.
-    pub fn add(&mut self, image: &Image, delay: u16) -> std::io::Result<()> {
-        self.delays.push(delay);
-        self.frames.add(image)
-    }
-
-    /// Writes the file: its colours are known once all frames are.
-    pub fn finish(mut self) -> std::io::Result<()> {
-        let Some([width, height, _]) = self.frames.extent() else { return Ok(()) };
-        let side = |pixels: usize| {
-            u16::try_from(pixels).map_err(|_| std::io::Error::other("a GIF is at most 65 535 pixels wide and high"))
-        };
-        let palette = Palette::of(&self.frames)?;
-        let mut table = palette.table();
-        let encoder = gif::Encoder::new(&mut self.target, side(width)?, side(height)?, &palette.bytes());
-        let mut encoder = encoder.map_err(std::io::Error::other)?;
-        encoder.set_repeat(gif::Repeat::Infinite).map_err(std::io::Error::other)?;
-        self.frames.take(|number, Taken { image, area, before }| {
-            let mut buffer = Vec::with_capacity(area.width() * area.height());
-            for y in area.top..area.bottom {
-                for x in area.left..area.right {
-                    let at = 3 * (y * width + x)..3 * (y * width + x) + 3;
-                    let pixel = &image.rgb[at.clone()];
-                    let stays = before.is_some_and(|before| before.rgb[at] == *pixel);
-                    buffer.push(if stays { UNCHANGED } else { table.index([pixel[0], pixel[1], pixel[2]], x, y) });
-                }
+/// Writes the file: its colours are known once all frames are.
+pub(super) fn write(frames: &Kept, target: &mut impl Write) -> std::io::Result<()> {
+    let Some([width, height, _]) = frames.extent() else { return Ok(()) };
+    let side = |pixels: usize| {
+        u16::try_from(pixels).map_err(|_| std::io::Error::other("a GIF is at most 65 535 pixels wide and high"))
+    };
+    let palette = Palette::of(frames)?;
+    let mut table = palette.table();
+    let encoder = gif::Encoder::new(target, side(width)?, side(height)?, &palette.bytes());
+    let mut encoder = encoder.map_err(std::io::Error::other)?;
+    encoder.set_repeat(gif::Repeat::Infinite).map_err(std::io::Error::other)?;
+    frames.take(|Taken { image, area, before, delay }| {
+        let mut buffer = Vec::with_capacity(area.width() * area.height());
+        for y in area.top..area.bottom {
+            for x in area.left..area.right {
+                let at = 3 * (y * width + x)..3 * (y * width + x) + 3;
+                let pixel = &image.rgb[at.clone()];
+                let stays = before.is_some_and(|before| before.rgb[at] == *pixel);
+                buffer.push(if stays { UNCHANGED } else { table.index([pixel[0], pixel[1], pixel[2]], x, y) });
             }
-            let frame = gif::Frame {
-                delay: self.delays[number],
-                dispose: gif::DisposalMethod::Keep,
-                transparent: Some(UNCHANGED),
-                left: side(area.left)?,
-                top: side(area.top)?,
-                width: side(area.width())?,
-                height: side(area.height())?,
-                buffer: buffer.into(),
-                ..gif::Frame::default()
-            };
-            encoder.write_frame(&frame).map_err(std::io::Error::other)
-        })?;
-        encoder.into_inner().map_err(std::io::Error::other)?.flush()
-    }
+        }
+        let frame = gif::Frame {
+            delay,
+            dispose: gif::DisposalMethod::Keep,
+            transparent: Some(UNCHANGED),
+            left: side(area.left)?,
+            top: side(area.top)?,
+            width: side(area.width())?,
+            height: side(area.height())?,
+            buffer: buffer.into(),
+            ..gif::Frame::default()
+        };
+        encoder.write_frame(&frame).map_err(std::io::Error::other)
+    })?;
+    encoder.into_inner().map(drop).map_err(std::io::Error::other)
 }
 
 /// Up to 255 colours that stand for all of a film's.
@@ -88,7 +68,7 @@ impl Palette {
     /// Colours by median cut: the box of colours with the largest squared spread is halved until 255 boxes are there.
     fn of(frames: &Kept) -> std::io::Result<Self> {
         let mut counts = vec![Count { bin: 0, number: 0, sum: [0; 3] }; 1 << (3 * BITS)];
-        frames.take(|_, Taken { image, area, .. }| {
+        frames.take(|Taken { image, area, .. }| {
             for row in area.rows(image.width) {
                 for pixel in image.rgb[row].chunks_exact(3) {
                     let count = &mut counts[bin([pixel[0], pixel[1], pixel[2]]) as usize];

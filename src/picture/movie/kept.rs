@@ -21,7 +21,8 @@ pub(super) struct Area {
 #[derive(Default)]
 pub(super) struct Kept {
     before: Option<Image>,
-    frames: Vec<(Area, Vec<u8>)>,
+    /// What changed, packed, and how long the frame stays.
+    frames: Vec<(Area, Vec<u8>, u16)>,
 }
 
 /// A frame that is taken out again.
@@ -32,17 +33,19 @@ pub(super) struct Taken<'a> {
     pub area: Area,
     /// The frame before.
     pub before: Option<&'a Image>,
+    /// How long it stays, in the parts of a second that it was added with.
+    pub delay: u16,
 }
 
 impl Kept {
-    /// Adds a frame of the size of the others.
-    pub fn add(&mut self, image: &Image) -> std::io::Result<()> {
+    /// Adds a frame of the size of the others, which stays for `delay` parts of a second.
+    pub fn add(&mut self, image: &Image, delay: u16) -> std::io::Result<()> {
         let area = Area::changed(self.before.as_ref(), image);
         let mut packer = ZlibEncoder::new(Vec::new(), Compression::fast());
         for row in area.rows(image.width) {
             packer.write_all(&image.rgb[row])?;
         }
-        self.frames.push((area, packer.finish()?));
+        self.frames.push((area, packer.finish()?, delay));
         self.before = Some(image.clone());
         Ok(())
     }
@@ -53,17 +56,17 @@ impl Kept {
     }
 
     /// Takes all frames out, in their order.
-    pub fn take(&self, mut one: impl FnMut(usize, Taken) -> std::io::Result<()>) -> std::io::Result<()> {
+    pub fn take(&self, mut one: impl FnMut(Taken) -> std::io::Result<()>) -> std::io::Result<()> {
         let Some(last) = &self.before else { return Ok(()) };
         let mut before: Option<Image> = None;
-        for (number, (area, packed)) in self.frames.iter().enumerate() {
+        for (area, packed, delay) in &self.frames {
             let blank = || Image { width: last.width, height: last.height, rgb: vec![0; last.rgb.len()] };
             let mut image = before.clone().unwrap_or_else(blank);
             let mut unpacker = ZlibDecoder::new(&packed[..]);
             for row in area.rows(last.width) {
                 unpacker.read_exact(&mut image.rgb[row])?;
             }
-            one(number, Taken { image: &image, area: *area, before: before.as_ref() })?;
+            one(Taken { image: &image, area: *area, before: before.as_ref(), delay: *delay })?;
             before = Some(image);
         }
         Ok(())

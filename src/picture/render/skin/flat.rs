@@ -1,6 +1,8 @@
 //! Where skins are not bent: where a body lies on a sheet, or a sheet on it. Meshes do not go through each other, and skins that bulge
 //! beyond them would.
 
+use rayon::prelude::*;
+
 use super::topology::Topology;
 use crate::Vec3;
 use crate::picture::render::camera::Bounds;
@@ -18,46 +20,64 @@ const REACH: f64 = 1.0;
 pub(super) fn bends(surfaces: &[Surface], topologies: &[impl AsRef<Topology>]) -> Vec<Vec<f64>> {
     let mut bends = vec![Vec::new(); surfaces.len()];
     let is_bent = |surface: &Surface| !surface.has_normals() && !surface.facets.is_empty();
-    for sheet in (0..surfaces.len()).filter(|n| is_bent(&surfaces[*n]) && !topologies[*n].as_ref().is_closed) {
-        for other in (0..surfaces.len()).filter(|n| *n != sheet && is_bent(&surfaces[*n])) {
-            flatten(&surfaces[sheet], &surfaces[other], &mut bends[sheet]);
-            flatten(&surfaces[other], &surfaces[sheet], &mut bends[other]);
+    let is_sheet = |n: &usize| is_bent(&surfaces[*n]) && !topologies[*n].as_ref().is_closed;
+    let sheets: Vec<usize> = (0..surfaces.len()).filter(is_sheet).collect();
+    if sheets.is_empty() {
+        return bends;
+    }
+    let bodies: Vec<Option<Body>> =
+        surfaces.par_iter().map(|surface| if is_bent(surface) { Body::of(surface) } else { None }).collect();
+    for &sheet in &sheets {
+        for other in (0..surfaces.len()).filter(|n| *n != sheet) {
+            if let (Some(one), Some(two)) = (&bodies[sheet], &bodies[other]) {
+                one.flatten(two, &mut bends[sheet]);
+                two.flatten(one, &mut bends[other]);
+            }
         }
     }
     bends
 }
 
-/// Takes the bend away of atoms of a surface that are near another one.
-fn flatten(surface: &Surface, other: &Surface, bends: &mut Vec<f64>) {
-    let edge = mean_edge(other);
-    let (Some(own), Some(there)) = (Bounds::around(&surface.positions), Bounds::around(&other.positions)) else {
-        return;
-    };
-    let is_in = |bounds: &Bounds, at: &[f64; 3]| {
-        (0..3).all(|k| at[k] >= bounds.low[k] - REACH * edge && at[k] <= bounds.high[k] + REACH * edge)
-    };
-    let normals = normals(other);
-    let near: Vec<(Vec3, Vec3)> = other
-        .positions
-        .iter()
-        .zip(normals)
-        .filter(|(at, _)| is_in(&own, at))
-        .map(|(at, normal)| (Vec3::from(*at), normal))
-        .collect();
-    for (atom, at) in surface.positions.iter().enumerate().filter(|(_, at)| is_in(&there, at)) {
-        let at = Vec3::from(*at);
-        let away = |near: &&(Vec3, Vec3)| (near.0 - at).norm_squared();
-        let Some((nearest, normal)) = near.iter().min_by(|one, other| away(one).total_cmp(&away(other))) else {
-            return;
+/// A surface, and what others ask of it.
+struct Body<'a> {
+    positions: &'a [[f64; 3]],
+    /// At the atoms, the mean over the facets around by their areas.
+    normals: Vec<Vec3>,
+    bounds: Bounds,
+    /// The mean length of the sides of facets, µm.
+    edge: f64,
+}
+
+impl<'a> Body<'a> {
+    /// None of a surface that is nowhere.
+    fn of(surface: &'a Surface) -> Option<Self> {
+        let bounds = Bounds::around(&surface.positions)?;
+        Some(Self { positions: &surface.positions, normals: normals(surface), bounds, edge: mean_edge(surface) })
+    }
+
+    /// Takes the bend away of its atoms that are near another one.
+    fn flatten(&self, other: &Self, bends: &mut Vec<f64>) {
+        let reach = REACH * other.edge;
+        let is_in = |bounds: &Bounds, at: &[f64; 3]| {
+            (0..3).all(|k| at[k] >= bounds.low[k] - reach && at[k] <= bounds.high[k] + reach)
         };
-        if (nearest - at).norm() > REACH * edge {
-            continue;
-        }
-        let gap = (nearest - at).dot(normal).abs() / edge;
-        let share = ((gap - NEAR) / (FAR - NEAR)).clamp(0.0, 1.0);
-        if share < 1.0 {
-            bends.resize(surface.positions.len(), 1.0);
-            bends[atom] = bends[atom].min(share);
+        let atoms = other.positions.iter().zip(&other.normals).filter(|(at, _)| is_in(&self.bounds, at));
+        let near: Vec<(Vec3, Vec3)> = atoms.map(|(at, normal)| (Vec3::from(*at), *normal)).collect();
+        for (atom, at) in self.positions.iter().enumerate().filter(|(_, at)| is_in(&other.bounds, at)) {
+            let at = Vec3::from(*at);
+            let away = |near: &&(Vec3, Vec3)| (near.0 - at).norm_squared();
+            let Some((nearest, normal)) = near.iter().min_by(|one, other| away(one).total_cmp(&away(other))) else {
+                return;
+            };
+            if (nearest - at).norm() > reach {
+                continue;
+            }
+            let gap = (nearest - at).dot(normal).abs() / other.edge;
+            let share = ((gap - NEAR) / (FAR - NEAR)).clamp(0.0, 1.0);
+            if share < 1.0 {
+                bends.resize(self.positions.len(), 1.0);
+                bends[atom] = bends[atom].min(share);
+            }
         }
     }
 }
