@@ -35,6 +35,8 @@ pub(super) struct Collected {
     pub margin: f64,
     /// Where the atoms of each body were when its pairs were collected.
     at: Then,
+    /// Which bodies had their pairs with themselves collected, too: those that were not round.
+    with_itself: Vec<bool>,
     /// Bodies that are near each other.
     pub near: Near,
     /// Boxes of the bodies of each batch.
@@ -55,6 +57,7 @@ impl Clone for Collected {
             lists: self.lists.clone(),
             margin: self.margin,
             at: self.at.clone(),
+            with_itself: self.with_itself.clone(),
             measured: self.measured.clone(),
             ..Self::default()
         }
@@ -85,9 +88,25 @@ impl Collected {
         of_bodies.iter().map(|motion| motion.farthest).fold(0.0, larger)
     }
 
+    /// Whether bodies that are not round any more have no pairs with themselves yet. These count as moved far, so that theirs are collected anew.
+    pub fn lack_themselves(&self, round: &[bool], moved: &mut [Motion]) -> bool {
+        let mut lack = false;
+        for ((motion, is_round), with_itself) in moved.iter_mut().zip(round).zip(&self.with_itself) {
+            if !is_round && !with_itself {
+                (motion.farthest, lack) = (f64::INFINITY, true);
+            }
+        }
+        lack
+    }
+
+    /// Whether a body has all pairs with itself that it needs when it is round, or not.
+    pub fn has_itself(&self, body: u32, is_round: bool) -> bool {
+        is_round || self.with_itself[body as usize]
+    }
+
     /// Whether a pair may be missing that touches by now: whether two bodies that are near each other have moved beside each other by more
-    /// than the margin. However far they have moved together, their pairs go on.
-    pub fn are_stale(&mut self, scene: &Scene, positions: &[Vec3], moved: &[Motion]) -> bool {
+    /// than the margin, or parts of one that is not round. However far they have moved together, their pairs go on.
+    pub fn are_stale(&mut self, scene: &Scene, positions: &[Vec3], moved: &[Motion], round: &[bool]) -> bool {
         let half = 0.5 * scene.reach.range();
         let bounds = |body: u32, more: f64| match scene.of_body(body, positions) {
             [] => Bounds::EMPTY,
@@ -97,8 +116,9 @@ impl Collected {
         self.near.list(moved.len(), |body| bounds(body, 0.0), |body| bounds(body, spare));
         let (near, margin) = (&self.near, self.margin);
         let is_stale = |body: u32| {
-            let others = near.of(body).iter().filter(|other| **other >= body);
-            others.into_iter().any(|other| moved[body as usize].beside(&moved[*other as usize]) > margin)
+            let mut others =
+                near.of(body).iter().filter(|other| **other > body || **other == body && !round[body as usize]);
+            others.any(|other| moved[body as usize].beside(&moved[*other as usize]) > margin)
         };
         (0..scene.bodies.len() as u32).into_par_iter().with_min_len(BODIES_PER_JOB).any(is_stale)
     }
@@ -109,8 +129,8 @@ impl Collected {
         (FEW * far <= moved.len()).then_some(far)
     }
 
-    /// Collects all pairs.
-    pub fn collect(&mut self, scene: &Scene, positions: &[Vec3]) {
+    /// Collects all pairs, of bodies that are round none with themselves.
+    pub fn collect(&mut self, scene: &Scene, positions: &[Vec3], round: &[bool]) {
         let batches = scene.batches.len() - 1;
         self.lists.resize_with(batches, Lists::default);
         self.measured.resize_with(batches, Vec::new);
@@ -126,12 +146,14 @@ impl Collected {
         self.find_neighbours(scene);
         let Self { boxes, margin, lists, .. } = self;
         let lists = lists.par_iter_mut().enumerate();
-        lists.for_each(|(batch, lists)| lists.collect(scene, batch, positions, boxes, *margin));
+        lists.for_each(|(batch, lists)| lists.collect(scene, batch, positions, boxes, (*margin, round)));
+        self.with_itself.clear();
+        self.with_itself.extend(round.iter().map(|is_round| !is_round));
         self.at.take(scene, positions, &self.boxes.bounds);
     }
 
     /// Collects anew the pairs of bodies that have moved far, which have not moved then; all others keep theirs.
-    pub fn renew(&mut self, scene: &Scene, positions: &[Vec3], moved: &mut [Motion]) {
+    pub fn renew(&mut self, scene: &Scene, positions: &[Vec3], moved: &mut [Motion], round: &[bool]) {
         let limit = FAR * self.margin;
         self.far.clear();
         self.far.extend(moved.iter().map(|motion| motion.farthest > limit));
@@ -145,11 +167,12 @@ impl Collected {
         for (body, motion) in (0..).zip(moved).filter(|(body, _)| self.far[*body as usize]) {
             self.at.take_again(scene, body, positions, &self.boxes.bounds[body as usize]);
             *motion = Motion::NONE;
+            self.with_itself[body as usize] = !round[body as usize];
         }
         let threads = rayon::current_num_threads();
         self.spares.resize_with(threads.max(self.spares.len()), Mutex::default);
-        let Self { boxes, lists, at, before, far, spares, .. } = self;
-        let past = Past { far, at, neighbours: before };
+        let Self { boxes, lists, at, before, far, spares, with_itself, .. } = self;
+        let past = Past { far, at, neighbours: before, with_itself };
         lists.par_iter_mut().enumerate().filter(|(batch, _)| past.concerns(scene, *batch, boxes)).for_each(
             |(batch, lists)| {
                 let own = &spares[rayon::current_thread_index().unwrap_or(0) % spares.len()];
@@ -180,7 +203,8 @@ impl Collected {
         let measured: usize = self.measured.iter().map(|of_batch| size_of::<Bounds>() * of_batch.capacity()).sum();
         let bounds =
             size_of::<Bounds>() * self.boxes.bounds.capacity() + size_of::<Steps>() * self.boxes.steps.capacity();
-        let neighbours = self.boxes.neighbours.bytes() + self.before.bytes() + self.far.capacity();
+        let neighbours =
+            self.boxes.neighbours.bytes() + self.before.bytes() + self.far.capacity() + self.with_itself.capacity();
         packs + lists + measured + bounds + neighbours + self.near.bytes() + self.at.bytes()
     }
 }

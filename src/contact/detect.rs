@@ -38,6 +38,8 @@ pub struct Detector {
     renewed: usize,
     /// How each body has moved since its pairs were collected.
     moved_of: Vec<Motion>,
+    /// Which bodies are round now, and so have no contacts with themselves.
+    round: Vec<bool>,
     /// What several threads find before it is put in order.
     found: Vec<Found>,
     lows: Vec<Low>,
@@ -62,6 +64,9 @@ const WIDEST: f64 = 6.0;
 /// collecting them less often saves, in time and in memory.
 const MOST_WORDS: usize = 12;
 
+/// Bodies that one job looks at, whether they are round: less than a microsecond each.
+const BODIES_PER_JOB: usize = 16;
+
 /// Batches that each thread looks at before what is found is put in order.
 const BATCHES_PER_THREAD: usize = 8;
 
@@ -78,16 +83,20 @@ impl Detector {
         assert_eq!(positions.len(), scene.atoms, "one position per atom of the scene");
         let mut moved_of = std::mem::take(&mut self.moved_of);
         let moved = self.moved(scene, positions, &mut moved_of);
-        let collected =
-            !moved.is_finite() || moved > 0.5 * self.pairs.margin && self.pairs.are_stale(scene, positions, &moved_of);
+        let bodies = (0..scene.bodies.len() as u32).into_par_iter().with_min_len(BODIES_PER_JOB);
+        bodies.map(|body| scene.is_round(body, positions)).collect_into_vec(&mut self.round);
+        let collected = !moved.is_finite()
+            || self.pairs.lack_themselves(&self.round, &mut moved_of)
+            || moved > 0.5 * self.pairs.margin && self.pairs.are_stale(scene, positions, &moved_of, &self.round);
         let renewed = if collected { self.collect(scene, positions, moved, &mut moved_of) } else { 0 };
         self.looks += 1;
         contacts.clear();
         let since = Moved { of_bodies: &moved_of, scale: levels_over(self.pairs.margin, scene.reach.range()) };
         let Collected { boxes: Boxes { neighbours, .. }, lists: all, .. } = &self.pairs;
+        let who = Who { neighbours, round: &self.round };
         if rayon::current_num_threads() == 1 {
             for (batch, lists) in all.iter().enumerate() {
-                look(scene, positions, batch, lists, neighbours, &since, &mut self.lows, contacts);
+                look(scene, positions, batch, lists, &who, &since, &mut self.lows, contacts);
             }
         } else {
             // So many at a time that threads seldom wait for each other, and few contacts are held twice.
@@ -97,7 +106,7 @@ impl Detector {
                 self.found[..lists.len()].par_iter_mut().zip(lists).enumerate().for_each(|(number, (found, lists))| {
                     found.contacts.clear();
                     let (batch, lows, to) = (first + number, &mut found.lows, &mut found.contacts);
-                    look(scene, positions, batch, lists, neighbours, &since, lows, to);
+                    look(scene, positions, batch, lists, &who, &since, lows, to);
                 });
                 self.found[..lists.len()].iter().for_each(|found| contacts.append(&found.contacts));
             }
@@ -117,11 +126,11 @@ impl Detector {
             (self.looks, self.renewed) = (0, 0);
         }
         if let Some(few) = few.filter(|_| margin == self.pairs.margin) {
-            self.pairs.renew(scene, positions, moved_of);
+            self.pairs.renew(scene, positions, moved_of, &self.round);
             return few;
         }
         self.pairs.margin = margin;
-        self.pairs.collect(scene, positions);
+        self.pairs.collect(scene, positions, &self.round);
         moved_of.clear();
         moved_of.resize(scene.bodies.len(), Motion::NONE);
         scene.bodies.len()
@@ -146,6 +155,11 @@ impl Detector {
     pub fn forget(&mut self) {
         self.pairs.forget();
         self.pairs.near.forget();
+    }
+
+    /// Whether a body has all pairs with itself that it needs when it is round, or not.
+    pub(super) fn has_itself(&self, body: u32, is_round: bool) -> bool {
+        self.pairs.has_itself(body, is_round)
     }
 
     /// Bodies that are near each other.
@@ -173,7 +187,22 @@ impl Detector {
     pub fn bytes(&self) -> usize {
         let of_found = |found: &Found| found.contacts.bytes() + size_of::<Low>() * found.lows.capacity();
         let found: usize = self.found.iter().map(of_found).sum();
-        self.pairs.bytes() + found + size_of::<Motion>() * self.moved_of.capacity()
+        self.pairs.bytes() + found + size_of::<Motion>() * self.moved_of.capacity() + self.round.capacity()
+    }
+}
+
+/// Who may touch whom.
+struct Who<'a> {
+    neighbours: &'a Neighbours,
+    round: &'a [bool],
+}
+
+impl Who<'_> {
+    /// A body and one of its neighbours; none where that is the body itself and cannot touch itself now.
+    #[inline]
+    fn pair(&self, body: u32, position: usize) -> Option<[u32; 2]> {
+        let other = self.neighbours.of(body)[position];
+        (other != body || !self.round[body as usize]).then_some([body, other])
     }
 }
 
@@ -183,7 +212,7 @@ fn look(
     positions: &[Vec3],
     batch: usize,
     lists: &Lists,
-    neighbours: &Neighbours,
+    who: &Who,
     moved: &Moved,
     lows: &mut Vec<Low>,
     contacts: &mut Contacts,
@@ -197,7 +226,7 @@ fn look(
             atom -= scene.shape(body).atoms as u32;
             body += 1;
         }
-        let pair = [body, neighbours.of(body)[position]];
+        let Some(pair) = who.pair(body, position) else { continue };
         let limit = moved.limit(pair);
         if part.has(limit) {
             find_atom_contacts(scene, positions, pair, atom, (part, limit), lows, &mut contacts.atoms);
@@ -214,7 +243,7 @@ fn look(
             edge -= scene.shape(body).edges.len() as u32;
             body += 1;
         }
-        let pair = [body, neighbours.of(body)[position]];
+        let Some(pair) = who.pair(body, position) else { continue };
         let limit = moved.limit(pair);
         if part.has(limit) {
             find_edge_contacts(scene, positions, pair, edge, (part, limit), &mut ridge, &mut contacts.edges);

@@ -80,8 +80,15 @@ impl Lists {
         self.facets.bytes() + self.edges.bytes() + 4 * self.near.capacity() + 8 * self.pairs.capacity()
     }
 
-    /// Collects the pairs of a batch: all within what matters now and a margin (µm), eq. (contacts.5).
-    pub fn collect(&mut self, scene: &Scene, batch: usize, positions: &[Vec3], boxes: &Boxes, margin: f64) {
+    /// Collects the pairs of a batch: all within what matters now and a margin (µm), eq. (contacts.5), but those of round bodies with themselves.
+    pub fn collect(
+        &mut self,
+        scene: &Scene,
+        batch: usize,
+        positions: &[Vec3],
+        boxes: &Boxes,
+        (margin, round): (f64, &[bool]),
+    ) {
         self.range = scene.reach.range();
         self.reach = self.range + margin;
         self.scale = levels_over(margin, self.range);
@@ -91,10 +98,12 @@ impl Lists {
         for body in scene.bodies_of(batch) {
             let shape = scene.shape(body);
             let here = scene.of_body(body, positions);
+            let neighbours = boxes.neighbours.of(body);
+            let may_touch = |other: u32| other != body || !round[body as usize];
             for atom in (0..shape.atoms).filter(|atom| shape.is_outer(*atom)) {
                 let bounds = Bounds::around(&here[atom..=atom], self.reach);
-                for (&other, position) in boxes.neighbours.of(body).iter().zip(0..) {
-                    if bounds.meets(&boxes.bounds[other as usize]) {
+                for (&other, position) in neighbours.iter().zip(0..) {
+                    if may_touch(other) && bounds.meets(&boxes.bounds[other as usize]) {
                         let there = scene.of_body(other, positions);
                         self.collect_facets(scene, [body, other], atom, &bounds, [here, there], boxes);
                         self.facets.add(first_atom + atom as u32, position, &self.pairs);
@@ -102,13 +111,13 @@ impl Lists {
                 }
             }
             for facet in 0..shape.facets.len() as u32 {
-                self.gather_near(scene, body, facet, here, boxes, |_| true);
+                self.gather_near(scene, body, facet, here, boxes, |position| may_touch(neighbours[position]));
                 let near = std::mem::take(&mut self.near);
                 for edge in shape.edges_of(facet) {
                     let first = Edge::of(shape, here, edge, self.reach);
                     let mut rest = &near[..];
                     while let Some((position, facets)) = next_near(&mut rest) {
-                        let other = boxes.neighbours.of(body)[position as usize];
+                        let other = neighbours[position as usize];
                         let there = scene.of_body(other, positions);
                         self.collect_edges(scene, [body, other], &first, facets, there);
                         self.edges.add(first_edge + edge, position, &self.pairs);

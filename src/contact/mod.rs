@@ -29,6 +29,7 @@ mod passages;
 mod reference;
 mod renew;
 mod ridge;
+mod round;
 mod scene;
 mod separation;
 mod shape;
@@ -59,6 +60,8 @@ pub use travel::{Itself, Stride, Travel};
 mod analytic_tests;
 #[cfg(test)]
 mod fuzz_tests;
+#[cfg(test)]
+mod round_tests;
 #[cfg(test)]
 mod swept_tests;
 #[cfg(test)]

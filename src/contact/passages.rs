@@ -34,7 +34,7 @@ pub struct Passage {
 /// Whether the pairs kept are all that could meet in a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Coverage {
-    /// No atom was farther than half of the margin from where the pairs were collected.
+    /// No atom was farther than half of the margin from where the pairs were collected, and those without pairs with themselves were round.
     Complete,
     /// Some atom was: meetings may be missing.
     Partial,
@@ -94,7 +94,11 @@ impl Detector {
                 }
             }
         }
-        let covered = [before, after].iter().all(|positions| self.moved(scene, positions, &mut moved_of) <= half);
+        let covered = [before, after].iter().all(|positions| {
+            let mut bodies = 0..scene.bodies.len() as u32;
+            self.moved(scene, positions, &mut moved_of) <= half
+                && bodies.all(|body| self.has_itself(body, scene.is_round(body, positions)))
+        });
         if covered { Coverage::Complete } else { Coverage::Partial }
     }
 }

@@ -8,7 +8,8 @@ use super::scene::Scene;
 use super::words::{HIGHEST, Part, Words};
 use crate::Vec3;
 
-/// Finds all contacts by looking at every pair of an atom and a facet and every pair of edges. The same contacts in
+/// Finds all contacts by looking at every pair of an atom and a facet and every pair of edges, but for those of a body with itself that is
+/// round, (contacts.15). The same contacts in
 /// the same order as [`Detector::detect`](super::Detector::detect), at a cost that grows with the square of the atoms.
 pub fn detect_all_pairs(scene: &Scene, positions: &[Vec3], contacts: &mut Contacts) {
     contacts.clear();
@@ -16,8 +17,10 @@ pub fn detect_all_pairs(scene: &Scene, positions: &[Vec3], contacts: &mut Contac
     let (mut lows, mut words, mut pairs) = (Vec::new(), Words::default(), Vec::new());
     for body in 0..bodies {
         let shape = scene.shape(body);
+        let is_round = scene.is_round(body, positions);
+        let may_touch = |other: &u32| *other != body || !is_round;
         for atom in (0..shape.atoms as u32).filter(|atom| shape.is_outer(*atom as usize)) {
-            for other in 0..bodies {
+            for other in (0..bodies).filter(may_touch) {
                 let facets = 0..scene.shape(other).facets.len() as u32;
                 let facets = facets.filter(|&facet| other != body || !shape.is_near(atom, facet));
                 let part = list(&mut words, &mut pairs, facets);
@@ -26,7 +29,7 @@ pub fn detect_all_pairs(scene: &Scene, positions: &[Vec3], contacts: &mut Contac
         }
         for edge in 0..shape.edges.len() as u32 {
             let mut first = None;
-            for other in body..bodies {
+            for other in (body..bodies).filter(may_touch) {
                 let edges = 0..scene.shape(other).edges.len() as u32;
                 let edges = edges.filter(|&e| other != body || (e > edge && !shape.are_edges_near(edge, e)));
                 let part = list(&mut words, &mut pairs, edges);

@@ -18,6 +18,8 @@ pub(super) struct Past<'a> {
     pub at: &'a Then,
     /// Who might touch whom.
     pub neighbours: &'a Neighbours,
+    /// Who might touch itself, of those that moved far where they are now.
+    pub with_itself: &'a [bool],
 }
 
 /// Scratch of a thread.
@@ -37,6 +39,8 @@ enum Origin {
     Kept(u32),
     /// They are collected; the first of its atoms in the list of points.
     Anew(u32),
+    /// There are none: the neighbour is the body itself, which is round.
+    None,
 }
 
 /// Lists as they were, read in their order.
@@ -86,7 +90,8 @@ impl Past<'_> {
             let kept = kept.filter(|_| !self.far[body as usize] && !self.far[other as usize]);
             origins.push(match kept {
                 Some(index) => Origin::Kept(index as u32),
-                None if other == body => Origin::Anew(0),
+                None if other == body && self.with_itself[body as usize] => Origin::Anew(0),
+                None if other == body => Origin::None,
                 None => Origin::Anew(add(other)),
             });
         }
@@ -130,7 +135,7 @@ impl Lists {
                             self.collect_facets(scene, [body, other], atom, &bounds, both, boxes);
                             facets.add(owner, position, &self.pairs);
                         }
-                        Origin::Anew(_) => {}
+                        Origin::Anew(_) | Origin::None => {}
                     }
                 }
             }
@@ -151,7 +156,7 @@ impl Lists {
                                 self.collect_edges(scene, [body, other], edge, facets, there(start, other));
                                 edges.add(owner, position, &self.pairs);
                             }
-                            (Origin::Anew(_), _) => {}
+                            (Origin::Anew(_) | Origin::None, _) => {}
                         }
                     }
                 }

@@ -11,7 +11,7 @@ use crate::geometry::Obstacle;
 /// How near is a contact. All three are lengths in µm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reach {
-    /// Pairs with a gap below this are contacts. Default in experiments: a tenth of the mean edge.
+    /// Pairs with a gap below this are contacts. Default in experiments: a tenth of the mean edge, a fifth where contacts only push.
     pub proximity: f64,
     /// Atoms and edges that are inside another surface by no more than this are found. It must be less than the
     /// thickness of the thinnest surface.

@@ -6,6 +6,7 @@ use super::boxes::Bounds;
 use super::detect::Detector;
 use super::motion::Motion;
 use super::near::Near;
+use super::round::{ROUND, is_round, least_cosine};
 use super::scene::Scene;
 use super::shape::Sides;
 use crate::Vec3;
@@ -18,10 +19,6 @@ const FARTHEST: f64 = 32.0;
 
 /// How much farther than is needed bodies are listed as near, over how far they go: the list lasts for some steps.
 const SPARE: f64 = 3.0;
-
-/// The least cosine between the normal of a facet and the direction to it from the middle of its body at which that is far from touching itself:
-/// walls of grooves are steeper.
-const ROUND: f64 = 0.25;
 
 /// Bodies that a thread takes at once, at least.
 const BODIES_PER_JOB: usize = 64;
@@ -95,12 +92,12 @@ impl Stride {
         let beside = (0..atoms).map(|atom| (to(atom) - from(atom) - mean).norm_squared()).fold(0.0, f64::max);
         let motion = Motion { mean, beside: beside.sqrt(), farthest: farthest.sqrt() };
         let to_itself = motion.beside.min(motion.farthest) / safe;
-        let stays_round = || match itself {
-            Itself::Never => true,
-            Itself::Closed(facets) => is_round(facets, from, middle) && is_round(facets, to, middle + mean),
-            Itself::Anywhere => false,
+        let to_itself = match itself {
+            _ if to_itself < LEAST => 0.0,
+            Itself::Never => 0.0,
+            Itself::Closed(facets) => to_itself_if_closed(to_itself, facets, (from, middle), (to, middle + mean)),
+            Itself::Anywhere => to_itself,
         };
-        let to_itself = if to_itself < LEAST || stays_round() { 0.0 } else { to_itself };
         Self { motion, to_itself, bounds: Bounds::between(low, high), to_obstacles }
     }
 
@@ -126,13 +123,23 @@ impl Stride {
     }
 }
 
-/// Whether all facets of a closed surface look so far away from a point within, eq. (contacts.15), that the surface, which each ray from there meets once, cannot touch itself.
-fn is_round(facets: &[[u32; 3]], at: impl Fn(usize) -> Vec3, middle: Vec3) -> bool {
-    facets.iter().all(|facet| {
-        let [a, b, c] = facet.map(|atom| at(atom as usize) - middle);
-        let (normal, outwards) = ((b - a).cross(&(c - a)), a + b + c);
-        normal.dot(&outwards) > ROUND * normal.norm() * outwards.norm()
-    })
+/// What a closed body goes to itself whose atoms go so far beside their mean, over what is safe: nothing where it is round and stays so. Of one
+/// that was round no pairs with itself are held in the step, so that its surface must be far from going through itself where that ends, too, eq. (contacts.16).
+fn to_itself_if_closed(
+    beside: f64,
+    facets: &[[u32; 3]],
+    (from, middle): (impl Fn(usize) -> Vec3, Vec3),
+    (to, middle_after): (impl Fn(usize) -> Vec3, Vec3),
+) -> f64 {
+    if !is_round(facets, &from, middle) {
+        return beside;
+    }
+    let after = least_cosine(facets, to, middle_after);
+    if after > ROUND {
+        return 0.0;
+    }
+    let before = least_cosine(facets, from, middle);
+    beside.max((before - after) / (before - 0.5 * ROUND))
 }
 
 /// How far bodies go beside those that they may meet, over what is safe, eq. (contacts.6), where they move by these strides, one a body; 0
