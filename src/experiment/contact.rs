@@ -85,7 +85,7 @@ pub enum Zones {
 pub struct Contact {
     /// What cells do that touch.
     pub model: ContactModel,
-    /// Gap below which surfaces touch; a tenth of the smallest mean edge when absent.
+    /// Gap below which surfaces touch; a tenth of the smallest mean edge when absent, a fifth where no surfaces stick or rub.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-exclusive-minimum" = 0))]
     pub proximity: Option<Length>,
@@ -154,6 +154,21 @@ impl Contact {
             ContactModel::Links => Recorded::WithLinks,
             ContactModel::VirtualAdhesives => Recorded::WithAdhesives,
         }
+    }
+
+    /// Whether contacts do nothing but push: none sticks or resists sliding.
+    pub(super) fn only_pushes(&self) -> bool {
+        let sticks = |strength: Option<Stress>, energy: Option<LineStiffness>| {
+            strength.is_some_and(|strength| strength.value() > 0.0) || energy.is_some_and(|energy| energy.value() > 0.0)
+        };
+        let rubs = |shear: Option<Stress>, friction: Option<SurfaceDrag>| {
+            shear.is_some_and(|shear| shear.value() > 0.0) || friction.is_some_and(|friction| friction.value() > 0.0)
+        };
+        let does_more = |pair: &Between| sticks(pair.strength, pair.energy) || rubs(pair.shear_strength, pair.friction);
+        self.model == ContactModel::Cohesion
+            && !sticks(self.strength, self.energy)
+            && !rubs(self.shear_strength, self.friction)
+            && !self.between.iter().any(does_more)
     }
 
     /// Whether any surfaces have bonds.

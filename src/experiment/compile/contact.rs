@@ -11,8 +11,10 @@ use crate::sim::contact::{
 use crate::sim::{Kind, Obstacle};
 use crate::units::{LineStiffness, Stress, SurfaceDrag};
 
-/// The proximity over the smallest mean edge where the user names none.
+/// The proximity over the smallest mean edge where the user names none, and where contacts only push besides: then all that depends on it is
+/// how far cells that touch may go in a step.
 const PROXIMITY: f64 = 0.1;
+const PROXIMITY_OF_PUSHES: f64 = 0.2;
 
 /// The largest proximity over the smallest mean edge: above it an atom is near everything around it.
 const LARGEST: f64 = 0.5;
@@ -25,7 +27,8 @@ pub fn reach(document: &Document, kinds: &[Kind]) -> Result<Option<Reach>> {
     let Some(text) = &document.experiment.contact else { return Ok(None) };
     let smallest = kinds.iter().min_by(|one, other| one.edge.total_cmp(&other.edge));
     let edge = smallest.map_or(1.0, |kind| kind.edge);
-    let proximity = text.proximity.map_or(PROXIMITY * edge, |proximity| proximity.value());
+    let default = if text.only_pushes() { PROXIMITY_OF_PUSHES } else { PROXIMITY };
+    let proximity = text.proximity.map_or(default * edge, |proximity| proximity.value());
     if let Some(kind) = smallest.filter(|_| proximity > LARGEST * edge) {
         let fault = Fault::new(format!(
             "a proximity of {} um is too large for the mesh of type `{}`, whose mean edge is {} um",
@@ -33,12 +36,16 @@ pub fn reach(document: &Document, kinds: &[Kind]) -> Result<Option<Reach>> {
             kind.name,
             short(edge)
         ))
-        .help(format!("give at most {} um, or leave it out: then it is a tenth of the edge", short(LARGEST * edge)));
+        .help(format!(
+            "give at most {} um, or leave it out: then it is {} of the edge",
+            short(LARGEST * edge),
+            if text.only_pushes() { "a fifth" } else { "a tenth" }
+        ));
         let location = document.location("contact.proximity", "above half of the mean edge");
         return Err(Error::input(location.into_iter().fold(fault, Fault::at)));
     }
     let depth = if text.model == Text::Penalty { PENALTY_DEPTH * edge } else { proximity };
-    Ok(Some(Reach { proximity, depth, margin: proximity }))
+    Ok(Some(Reach { proximity, depth, margin: proximity.min(PROXIMITY * edge) }))
 }
 
 /// The shortest and the longest range of attraction over the mean edge of a mesh: below the one a facet hardly sees what its neighbour
