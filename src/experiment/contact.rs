@@ -156,19 +156,15 @@ impl Contact {
         }
     }
 
-    /// Whether contacts do nothing but push: none sticks or resists sliding.
+    /// Whether contacts do nothing but push: none sticks or resists sliding. (What rubs or has bonds has a strength.)
     pub(super) fn only_pushes(&self) -> bool {
-        let sticks = |strength: Option<Stress>, energy: Option<LineStiffness>| {
-            strength.is_some_and(|strength| strength.value() > 0.0) || energy.is_some_and(|energy| energy.value() > 0.0)
+        let holds = |strength: Option<Stress>, energy: Option<LineStiffness>, shear: Option<Stress>| {
+            let stresses = [strength, shear].into_iter().flatten().map(|stress| stress.value());
+            stresses.chain(energy.map(|energy| energy.value())).any(|value| value > 0.0)
         };
-        let rubs = |shear: Option<Stress>, friction: Option<SurfaceDrag>| {
-            shear.is_some_and(|shear| shear.value() > 0.0) || friction.is_some_and(|friction| friction.value() > 0.0)
-        };
-        let does_more = |pair: &Between| sticks(pair.strength, pair.energy) || rubs(pair.shear_strength, pair.friction);
         self.model == ContactModel::Cohesion
-            && !sticks(self.strength, self.energy)
-            && !rubs(self.shear_strength, self.friction)
-            && !self.between.iter().any(does_more)
+            && !holds(self.strength, self.energy, self.shear_strength)
+            && !self.between.iter().any(|pair| holds(pair.strength, pair.energy, pair.shear_strength))
     }
 
     /// Whether any surfaces have bonds.

@@ -119,8 +119,25 @@ fn an_empty_table_turns_contacts_on_and_nothing_sticks() {
     let Compiled { model, .. } = compiled("[contact]\n");
     let contact = model.contact.expect("contacts");
     assert!(contact.between.iter().chain(&contact.on_obstacles).all(|strength| *strength == Strength::default()));
-    let smallest = model.kinds.iter().map(|kind| kind.edge).fold(f64::INFINITY, f64::min);
-    assert_eq!(contact.reach.proximity, 0.1 * smallest);
+}
+
+#[test]
+fn what_only_pushes_has_twice_the_proximity_of_what_sticks_or_rubs() {
+    let proximity = |contact: &str| {
+        let Compiled { model, .. } = compiled(&format!("[contact]\n{contact}\n"));
+        let smallest = model.kinds.iter().map(|kind| kind.edge).fold(f64::INFINITY, f64::min);
+        model.contact.expect("contacts").reach.proximity / smallest
+    };
+    let pair = "[[contact.between]]\ntypes = [\"red\", \"white\"]\n";
+    for pushes in ["", "strength = \"0 Pa\""] {
+        assert!((proximity(pushes) - 0.2).abs() < 1e-12, "{pushes}");
+    }
+    let alone = ["strength = \"10 Pa\"", "energy = \"20 pN/um\"", "strength = \"0 Pa\"\nshear_strength = \"1 Pa\""];
+    let of_pair = alone.map(|key| format!("strength = \"0 Pa\"\n{pair}{key}"));
+    let other_laws = ["adhesives", "links"].map(|model| format!("model = \"{model}\""));
+    for holds in alone.map(String::from).into_iter().chain(of_pair).chain(other_laws) {
+        assert!((proximity(&holds) - 0.1).abs() < 1e-12, "{holds}");
+    }
 }
 
 #[test]

@@ -34,7 +34,7 @@ fn what_is_nearer_than_the_length_of_the_document_is_in_contact_and_nothing_that
             "title = \"Two sheets\"\n[run]\nuntil = \"1 s\"\n[cells.sheet]\n\
              mesh = {{ shape = \"sheet\", size = [\"10 um\", \"8 um\"], divisions = [5, 4] }}\n\
              placement = {{ at = [[\"0 um\", \"0 um\", \"0 um\"], [\"0 um\", \"0 um\", \"0.4 um\"]] }}\n\
-             mechanics = {{ drag = \"20 pN s/um\", springs = {{ stiffness = \"10 pN/um\" }} }}\n[contact]\n{within}\n"
+             mechanics = {{ drag = \"20 pN s/um\", springs = {{ stiffness = \"10 pN/um\" }} }}\n[contact]\nproximity = \"0.2 um\"\n{within}\n"
         );
         let simulation = Simulation::from_text("sheets.toml", &text).unwrap_or_else(|error| panic!("{error}"));
         let of_pair = ["contact.area.sheet.sheet", "contact.pairs.sheet.sheet", "aggregates"];
