@@ -140,7 +140,7 @@ impl Movie {
             }
             Kind::Folder => {
                 std::fs::create_dir_all(&self.path).map_err(|error| unwritable(&self.path, &error))?;
-                image.save_png(&self.path.join(format!("{:05}.png", self.frames)))
+                image.save_png(&numbered(&self.path, self.frames))
             }
             Kind::Ffmpeg { program, child } => {
                 if child.is_none() {
@@ -158,14 +158,14 @@ impl Movie {
                 }
                 std::fs::create_dir_all(&*folder).map_err(|error| unwritable(folder, &error))?;
                 if let Some(first) = waiting.take() {
-                    first.save_png(&folder.join("00001.png"))?;
+                    first.save_png(&numbered(folder, 1))?;
                 }
-                image.save_png(&folder.join(format!("{:05}.png", self.frames)))
+                image.save_png(&numbered(folder, self.frames))
             }
         }
     }
 
-    /// Completes the files and says what was written.
+    /// Completes the files and says what was written. Of a longer film that was in a folder before nothing is left, or it would go on with that.
     ///
     /// # Errors
     /// When the last bytes cannot be written or ffmpeg reports a failure.
@@ -176,13 +176,27 @@ impl Movie {
                 let written = format.write(&frames, &mut file).and_then(|()| file.flush());
                 written.map_err(|error| unwritable(&path, &error))?;
             }
-            Kind::Folder => {}
+            Kind::Folder => remove_after(&path, frames)?,
             Kind::Ffmpeg { child, .. } => finish_ffmpeg(child, &path)?,
             Kind::Sequence { waiting: Some(only), .. } => only.save_png(&path)?,
-            Kind::Sequence { folder, .. } => return Ok(Written { path: folder, frames }),
+            Kind::Sequence { folder, .. } => {
+                remove_after(&folder, frames)?;
+                return Ok(Written { path: folder, frames });
+            }
         }
         Ok(Written { path, frames })
     }
+}
+
+/// The file of the frame of this number, counted from 1.
+fn numbered(folder: &Path, frame: usize) -> PathBuf {
+    folder.join(format!("{frame:05}.png"))
+}
+
+/// Removes the frames of an earlier film that follow on the last of this one.
+fn remove_after(folder: &Path, last: usize) -> Result<()> {
+    let mut rest = (last + 1..).map(|frame| numbered(folder, frame)).take_while(|path| path.is_file());
+    rest.try_for_each(|path| std::fs::remove_file(&path).map_err(|error| unwritable(&path, &error)))
 }
 
 /// How long the frame of this number, counted from 1, stays, in parts of a second; what is rounded off it goes to the next.

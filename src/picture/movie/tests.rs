@@ -114,6 +114,21 @@ fn a_name_without_an_ending_is_a_folder() {
     }
 }
 
+#[test]
+fn frames_of_a_longer_film_in_the_same_folder_go_and_nothing_else_does() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["film", "film.png"] {
+        let numbered = folder.path().join("film");
+        for frames in [5, 2] {
+            let mut movie = Movie::create(&folder.path().join(name), 10.0).unwrap();
+            (0..frames).for_each(|frame| movie.add(&moving_square(frame)).unwrap());
+            movie.finish().unwrap();
+            std::fs::write(numbered.join("00009.png"), "another's").unwrap();
+            assert_eq!(numbered.read_dir().unwrap().count(), frames + 1);
+        }
+    }
+}
+
 fn moving_square(frame: usize) -> Image {
     let mut image = Image::filled(64, 40, Colour([250, 250, 250]));
     for y in 10..20 {
