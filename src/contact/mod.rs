@@ -17,6 +17,7 @@ mod groove;
 mod inside;
 pub(crate) mod lanes;
 mod lists;
+mod look;
 mod motion;
 mod near;
 mod near_facets;

@@ -1,9 +1,9 @@
 //! All pairs, without boxes or lists kept: slow, and what detection is held against.
 
 use super::atom_facet::find_atom_contacts;
-use super::detect::find_obstacle_contacts;
 use super::edge_edge::find_edge_contacts;
 use super::found::Contacts;
+use super::look::find_obstacle_contacts;
 use super::scene::Scene;
 use super::words::{HIGHEST, Part, Words};
 use crate::Vec3;
