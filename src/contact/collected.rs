@@ -22,7 +22,7 @@ const FEW: usize = 4;
 /// How much farther than is needed bodies are listed as near each other, over the margin: the list lasts for some looks.
 const SPARE: f64 = 2.0;
 
-/// Bodies whose motion one job measures: it takes less than a microsecond each.
+/// Bodies whose motion or roundness one job measures: it takes less than a microsecond each.
 const BODIES_PER_JOB: usize = 16;
 
 /// Pairs, and what they were collected from.
@@ -35,6 +35,8 @@ pub(super) struct Collected {
     pub margin: f64,
     /// Where the atoms of each body were when its pairs were collected.
     at: Then,
+    /// Which bodies are round now, and so have no contacts with themselves.
+    pub round: Vec<bool>,
     /// Which bodies had their pairs with themselves collected, too: those that were not round.
     with_itself: Vec<bool>,
     /// Bodies that are near each other.
@@ -88,10 +90,16 @@ impl Collected {
         of_bodies.iter().map(|motion| motion.farthest).fold(0.0, larger)
     }
 
+    /// Finds out which bodies are round where they are now.
+    pub fn find_round(&mut self, scene: &Scene, positions: &[Vec3]) {
+        let bodies = (0..scene.bodies.len() as u32).into_par_iter().with_min_len(BODIES_PER_JOB);
+        bodies.map(|body| scene.is_round(body, positions)).collect_into_vec(&mut self.round);
+    }
+
     /// Whether bodies that are not round any more have no pairs with themselves yet. These count as moved far, so that theirs are collected anew.
-    pub fn lack_themselves(&self, round: &[bool], moved: &mut [Motion]) -> bool {
+    pub fn lack_themselves(&self, moved: &mut [Motion]) -> bool {
         let mut lack = false;
-        for ((motion, is_round), with_itself) in moved.iter_mut().zip(round).zip(&self.with_itself) {
+        for ((motion, is_round), with_itself) in moved.iter_mut().zip(&self.round).zip(&self.with_itself) {
             if !is_round && !with_itself {
                 (motion.farthest, lack) = (f64::INFINITY, true);
             }
@@ -106,7 +114,7 @@ impl Collected {
 
     /// Whether a pair may be missing that touches by now: whether two bodies that are near each other have moved beside each other by more
     /// than the margin, or parts of one that is not round. However far they have moved together, their pairs go on.
-    pub fn are_stale(&mut self, scene: &Scene, positions: &[Vec3], moved: &[Motion], round: &[bool]) -> bool {
+    pub fn are_stale(&mut self, scene: &Scene, positions: &[Vec3], moved: &[Motion]) -> bool {
         let half = 0.5 * scene.reach.range();
         let bounds = |body: u32, more: f64| match scene.of_body(body, positions) {
             [] => Bounds::EMPTY,
@@ -114,7 +122,7 @@ impl Collected {
         };
         let spare = SPARE * self.margin;
         self.near.list(moved.len(), |body| bounds(body, 0.0), |body| bounds(body, spare));
-        let (near, margin) = (&self.near, self.margin);
+        let (near, margin, round) = (&self.near, self.margin, &self.round);
         let is_stale = |body: u32| {
             let mut others =
                 near.of(body).iter().filter(|other| **other > body || **other == body && !round[body as usize]);
@@ -130,7 +138,7 @@ impl Collected {
     }
 
     /// Collects all pairs, of bodies that are round none with themselves.
-    pub fn collect(&mut self, scene: &Scene, positions: &[Vec3], round: &[bool]) {
+    pub fn collect(&mut self, scene: &Scene, positions: &[Vec3]) {
         let batches = scene.batches.len() - 1;
         self.lists.resize_with(batches, Lists::default);
         self.measured.resize_with(batches, Vec::new);
@@ -144,16 +152,16 @@ impl Collected {
             measured.extend(scene.bodies_of(batch).map(|body| measure(scene, body, positions, packs)));
         });
         self.find_neighbours(scene);
-        let Self { boxes, margin, lists, .. } = self;
+        let Self { boxes, margin, lists, round, .. } = self;
         let lists = lists.par_iter_mut().enumerate();
         lists.for_each(|(batch, lists)| lists.collect(scene, batch, positions, boxes, (*margin, round)));
         self.with_itself.clear();
-        self.with_itself.extend(round.iter().map(|is_round| !is_round));
+        self.with_itself.extend(self.round.iter().map(|is_round| !is_round));
         self.at.take(scene, positions, &self.boxes.bounds);
     }
 
     /// Collects anew the pairs of bodies that have moved far, which have not moved then; all others keep theirs.
-    pub fn renew(&mut self, scene: &Scene, positions: &[Vec3], moved: &mut [Motion], round: &[bool]) {
+    pub fn renew(&mut self, scene: &Scene, positions: &[Vec3], moved: &mut [Motion]) {
         let limit = FAR * self.margin;
         self.far.clear();
         self.far.extend(moved.iter().map(|motion| motion.farthest > limit));
@@ -167,7 +175,7 @@ impl Collected {
         for (body, motion) in (0..).zip(moved).filter(|(body, _)| self.far[*body as usize]) {
             self.at.take_again(scene, body, positions, &self.boxes.bounds[body as usize]);
             *motion = Motion::NONE;
-            self.with_itself[body as usize] = !round[body as usize];
+            self.with_itself[body as usize] = !self.round[body as usize];
         }
         let threads = rayon::current_num_threads();
         self.spares.resize_with(threads.max(self.spares.len()), Mutex::default);
@@ -203,8 +211,11 @@ impl Collected {
         let measured: usize = self.measured.iter().map(|of_batch| size_of::<Bounds>() * of_batch.capacity()).sum();
         let bounds =
             size_of::<Bounds>() * self.boxes.bounds.capacity() + size_of::<Steps>() * self.boxes.steps.capacity();
-        let neighbours =
-            self.boxes.neighbours.bytes() + self.before.bytes() + self.far.capacity() + self.with_itself.capacity();
+        let neighbours = self.boxes.neighbours.bytes()
+            + self.before.bytes()
+            + self.far.capacity()
+            + self.round.capacity()
+            + self.with_itself.capacity();
         packs + lists + measured + bounds + neighbours + self.near.bytes() + self.at.bytes()
     }
 }

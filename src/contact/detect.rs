@@ -37,8 +37,6 @@ pub struct Detector {
     renewed: usize,
     /// How each body has moved since its pairs were collected.
     moved_of: Vec<Motion>,
-    /// Which bodies are round now, and so have no contacts with themselves.
-    round: Vec<bool>,
     /// What several threads find before it is put in order.
     found: Vec<Found>,
     lows: Vec<Low>,
@@ -63,9 +61,6 @@ const WIDEST: f64 = 6.0;
 /// collecting them less often saves, in time and in memory.
 const MOST_WORDS: usize = 12;
 
-/// Bodies that one job looks at, whether they are round: less than a microsecond each.
-const BODIES_PER_JOB: usize = 16;
-
 /// Batches that each thread looks at before what is found is put in order.
 const BATCHES_PER_THREAD: usize = 8;
 
@@ -82,17 +77,16 @@ impl Detector {
         assert_eq!(positions.len(), scene.atoms, "one position per atom of the scene");
         let mut moved_of = std::mem::take(&mut self.moved_of);
         let moved = self.moved(scene, positions, &mut moved_of);
-        let bodies = (0..scene.bodies.len() as u32).into_par_iter().with_min_len(BODIES_PER_JOB);
-        bodies.map(|body| scene.is_round(body, positions)).collect_into_vec(&mut self.round);
+        self.pairs.find_round(scene, positions);
         let collected = !moved.is_finite()
-            || self.pairs.lack_themselves(&self.round, &mut moved_of)
-            || moved > 0.5 * self.pairs.margin && self.pairs.are_stale(scene, positions, &moved_of, &self.round);
+            || self.pairs.lack_themselves(&mut moved_of)
+            || moved > 0.5 * self.pairs.margin && self.pairs.are_stale(scene, positions, &moved_of);
         let renewed = if collected { self.collect(scene, positions, moved, &mut moved_of) } else { 0 };
         self.looks += 1;
         contacts.clear();
         let since = Moved { of_bodies: &moved_of, scale: levels_over(self.pairs.margin, scene.reach.range()) };
-        let Collected { boxes: Boxes { neighbours, .. }, lists: all, .. } = &self.pairs;
-        let who = Who { neighbours, round: &self.round };
+        let Collected { boxes: Boxes { neighbours, .. }, lists: all, round, .. } = &self.pairs;
+        let who = Who { neighbours, round };
         if rayon::current_num_threads() == 1 {
             for (batch, lists) in all.iter().enumerate() {
                 look(scene, positions, batch, lists, &who, &since, &mut self.lows, contacts);
@@ -125,11 +119,11 @@ impl Detector {
             (self.looks, self.renewed) = (0, 0);
         }
         if let Some(few) = few.filter(|_| margin == self.pairs.margin) {
-            self.pairs.renew(scene, positions, moved_of, &self.round);
+            self.pairs.renew(scene, positions, moved_of);
             return few;
         }
         self.pairs.margin = margin;
-        self.pairs.collect(scene, positions, &self.round);
+        self.pairs.collect(scene, positions);
         moved_of.clear();
         moved_of.resize(scene.bodies.len(), Motion::NONE);
         scene.bodies.len()
@@ -186,6 +180,6 @@ impl Detector {
     pub fn bytes(&self) -> usize {
         let of_found = |found: &Found| found.contacts.bytes() + size_of::<Low>() * found.lows.capacity();
         let found: usize = self.found.iter().map(of_found).sum();
-        self.pairs.bytes() + found + size_of::<Motion>() * self.moved_of.capacity() + self.round.capacity()
+        self.pairs.bytes() + found + size_of::<Motion>() * self.moved_of.capacity()
     }
 }
