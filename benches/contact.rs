@@ -9,7 +9,7 @@ use pseudopod::geometry::icosphere;
 use pseudopod::random::{Purpose, Stream};
 
 /// A tenth of the mean edge for all three.
-const REACH: Reach = Reach { proximity: 0.055, depth: 0.055, margin: 0.055 };
+const REACH: Reach = Reach { proximity: 0.055, prediction: 0.055, depth: 0.055, margin: 0.055 };
 
 /// Half of the distance of cells of radius 1: they are flattened where they meet, and one in three atoms touches.
 const HALF_DISTANCE: f64 = 0.82;
@@ -30,7 +30,7 @@ fn vector(dice: &mut Stream) -> Vec3 {
 pub fn packed(count: usize) -> (Scene, Vec<Vec3>) {
     let mut dice = Stream::new(1, Purpose::Placement, 0, 0);
     let rest = icosphere(1.0, 1);
-    let shape = Shape::new(&rest, Sides::Outer, 1.5 * REACH.proximity);
+    let shape = Shape::new(&rest, Sides::Outer, 1.5 * REACH.prediction);
     let side = (1..).find(|side: &usize| side.pow(3).div_ceil(2) >= count).expect("a cube large enough");
     let cube = (0..side.pow(3)).map(|i| [i % side, i / side % side, i / side / side]);
     let directions = [[1, 1, 0], [1, -1, 0], [1, 0, 1], [1, 0, -1], [0, 1, 1], [0, 1, -1]];

@@ -65,7 +65,8 @@ fn population(cells: usize, largest: f64) -> (Model, State) {
     let integrator = Integrator { method: Method::Implicit { order: Order::Second }, size };
     let mut model = Model::of(vec![kind], integrator, f64::MAX);
     let near = 0.1 * model.kinds[0].edge;
-    let mut contact = ContactModel::new(&model.kinds, &[], Reach { proximity: near, depth: near, margin: near });
+    let mut contact =
+        ContactModel::new(&model.kinds, &[], Reach { proximity: near, prediction: near, depth: near, margin: near });
     contact.stick(0, 0, Strength { tensile: 0.2, shear: 0.2, energy: 0.0 });
     model.contact = Some(contact.suited_to(size));
     let side = (1..).find(|side: &usize| side.pow(3).div_ceil(2) >= cells).expect("a cube large enough");

@@ -1,15 +1,15 @@
 //! Contacts whose answer is known without computing.
 
-use super::test_scenes::{Stage, stage};
+use super::test_scenes::{Dice, Stage, deform, stage};
 use super::{
-    AtomContact, Contacts, Detector, EdgeContact, Feature, Reach, Scene, Shape, Sides, add_walls_of_grooves,
+    AtomContact, Contacts, Detector, EdgeContact, Facing, Feature, Reach, Scene, Shape, Sides, add_walls_of_grooves,
     detect_all_pairs, find_overlaps, winding_number,
 };
 use crate::Vec3;
 use crate::geometry::Obstacle;
 use crate::geometry::{Surface, icosphere, sheet, translate};
 
-const REACH: Reach = Reach { proximity: 0.2, depth: 0.2, margin: 0.1 };
+const REACH: Reach = Reach { proximity: 0.2, prediction: 0.2, depth: 0.2, margin: 0.1 };
 
 fn detect(stage: &Stage) -> Contacts {
     let mut contacts = Contacts::default();
@@ -145,6 +145,37 @@ fn an_atom_that_slides_into_a_groove_has_its_other_wall_before_it_is_there() {
     }
 }
 
+#[test]
+fn a_groove_has_no_wall_that_an_atom_is_far_behind() {
+    // An atom that has come by a sweep's worth around a corner of a rough ball is told by its memory as behind it, and is as far behind the
+    // planes of the facets beside as these are steep.
+    let (rest, mut dice) = (icosphere(1.0, 1), Dice(3));
+    let reach = Reach { proximity: 0.05, prediction: 0.3, depth: 0.3, margin: 0.1 };
+    let (tip, needle) = (rest.positions.len(), needle(Vec3::zeros()));
+    let bodies = [(&rest, Sides::Both, rest.positions.clone()), (&needle, Sides::Outer, needle.positions.clone())];
+    let mut stage = stage(&bodies, Vec::new(), reach);
+    let mut walls = 0;
+    for number in 0..1000 {
+        stage.positions[..tip].copy_from_slice(&deform(&rest, &mut dice, 0.0, 0.2));
+        let at = stage.positions[number % tip] + 0.03 * dice.vector();
+        stage.positions[tip..].iter_mut().zip(&needle.positions).for_each(|(x, rest)| *x = rest + at);
+        let mut contacts = detect(&stage);
+        contacts.atoms.retain(|near| near.atom as usize == tip);
+        let found = contacts.atoms.clone();
+        for near in contacts.atoms.iter_mut().filter(|near| near.facing != Facing::Any) {
+            let facing = if near.facing == Facing::Front { Facing::Back } else { Facing::Front };
+            (near.gap, near.normal, near.facing) = (-near.gap, -near.normal, facing);
+        }
+        add_walls_of_grooves(&stage.scene, &stage.positions, stage.scene.safe_travel(), &mut contacts);
+        let is_wall = |near: &&AtomContact| found.iter().all(|other| other.facet != near.facet);
+        for wall in contacts.atoms.iter().filter(is_wall) {
+            walls += 1;
+            assert!(wall.gap >= -0.003, "{wall:?} beside {found:?}");
+        }
+    }
+    assert!(walls > 20, "{walls}");
+}
+
 /// A tent that hangs from its lowest edge, between two points.
 fn keel(from: Vec3, to: Vec3) -> Surface {
     let (middle, across) = (0.5 * (from + to) + Vec3::z(), Vec3::z().cross(&(to - from)).normalize());
@@ -239,11 +270,11 @@ fn ridges_that_have_not_passed_each_other_touch_though_a_facet_rises_a_little() 
     let cases = [
         (0.09, 0.15, true),
         (0.09, 0.0, true),
-        // Passed by less than a hundredth of the proximity, and by more.
+        // Passed by less than a hundredth of the prediction, and by more.
         (0.09, -0.0019, true),
         (0.09, -0.0021, false),
         (0.11, 0.15, false),
-        // Nearer than the depth and the margin, but not than the proximity.
+        // Nearer than the depth and the margin, but not than the prediction.
         (0.09, 0.21, false),
     ];
     for (sine, gap, touches) in cases {

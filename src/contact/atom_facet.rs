@@ -80,8 +80,8 @@ pub(super) fn find_atom_contacts(
         }
         return;
     }
-    let proximity = scene.reach.proximity.powi(2);
-    for low in lows.iter().filter(|low| low.squared < proximity) {
+    let prediction = scene.reach.prediction.powi(2);
+    for low in lows.iter().filter(|low| low.squared < prediction) {
         let side = if low.facet == nearest.facet { side } else { surface.side(low) };
         if !side.inside {
             add(low, side);

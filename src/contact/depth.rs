@@ -115,7 +115,7 @@ mod tests {
     use super::*;
     use crate::geometry::{icosphere, sheet};
 
-    const REACH: Reach = Reach { proximity: 0.1, depth: 0.1, margin: 0.1 };
+    const REACH: Reach = Reach { proximity: 0.1, prediction: 0.1, depth: 0.1, margin: 0.1 };
 
     /// Depth of the second body in the first.
     fn depth(stage: &Stage) -> f64 {

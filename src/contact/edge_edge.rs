@@ -60,7 +60,7 @@ impl Outer {
 /// How far facets may rise towards the other edge, as a sine, where the edges have not passed each other.
 pub(super) const RISE: f64 = 0.1;
 
-/// How far edges with such facets may have passed each other, over the proximity: what sweeps leave.
+/// How far edges with such facets may have passed each other, over the prediction: what sweeps leave.
 const PASSED: f64 = 0.01;
 
 /// How far from where an edge crosses the crest of another, over its length, it may enter it, and how far beyond its end it may cross
@@ -87,7 +87,7 @@ fn cross(
     let between = first.start - second.start;
     let height = normal.dot(&between);
     let is_within = |distance: f64| height * height <= distance * distance * squared;
-    let may_rise = outer.any() & is_within(scene.reach.proximity);
+    let may_rise = outer.any() & is_within(scene.reach.prediction);
     let on_first = -between.cross(&second.along).dot(&normal);
     let on_second = -between.cross(&first.along).dot(&normal);
     let least = -BEYOND * squared;
@@ -120,13 +120,13 @@ fn cross(
     };
     let length = squared.sqrt();
     let (gap, normal) = (facing * height / length, normal * (facing / length));
-    if gap >= scene.reach.proximity || gap < -scene.reach.depth {
+    if gap >= scene.reach.prediction || gap < -scene.reach.depth {
         return None;
     }
     let fits = if !outer.any() {
         gap >= 0.0 && within
     } else if rises {
-        gap >= -PASSED * scene.reach.proximity && !have_turned(first, second, &normal, RISE)
+        gap >= -PASSED * scene.reach.prediction && !have_turned(first, second, &normal, RISE)
     } else if gap >= 0.0 {
         within
     } else {
@@ -193,7 +193,7 @@ const SLACK: f64 = 0.35;
 
 /// Looks again at a contact of two edges that was there before with this normal. Between nearly flat surfaces the facets of
 /// one edge rise a little towards the other in one moment and fall away in the next; a contact that carries a force must
-/// not come and go with that. Nothing when the edges have slid off each other, are farther apart than the proximity, or
+/// not come and go with that. Nothing when the edges have slid off each other, are farther apart than the prediction, or
 /// their facets have really turned.
 pub fn edges_still_touch(scene: &Scene, positions: &[Vec3], edges: [u32; 2], normal: &Vec3) -> Option<EdgeContact> {
     let bodies = edges.map(|edge| scene.body_of_edge(edge));
@@ -214,7 +214,7 @@ pub fn edges_still_touch(scene: &Scene, positions: &[Vec3], edges: [u32; 2], nor
     }
     let normal = across * (1f64.copysign(across.dot(normal)) / squared.sqrt());
     let gap = normal.dot(&between);
-    let near = gap < scene.reach.proximity && gap >= -scene.reach.depth;
+    let near = gap < scene.reach.prediction && gap >= -scene.reach.depth;
     (near && !have_turned(&first, &second, &normal, SLACK)).then(|| EdgeContact {
         edges,
         along: [on_first, on_second].map(|share| (share / squared) as f32),

@@ -1,7 +1,7 @@
 //! What detection finds: atoms on facets, edges on edges, atoms on obstacles.
 
 use super::closest::Feature;
-use super::scene::Scene;
+use super::scene::{Reach, Scene};
 use crate::Vec3;
 use serde::{Deserialize, Serialize};
 
@@ -132,6 +132,13 @@ impl Contacts {
         let of_edges = self.edges.iter().map(|contact| contact.gap);
         let of_obstacles = self.obstacles.iter().map(|contact| contact.gap);
         of_atoms.chain(of_edges).chain(of_obstacles).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Keeps those that touch.
+    pub fn keep_touching(&mut self, reach: &Reach) {
+        self.atoms.retain(|near| reach.touches(near.gap));
+        self.edges.retain(|near| reach.touches(near.gap));
+        self.obstacles.retain(|near| reach.touches(near.gap));
     }
 
     /// Forgets all contacts and keeps the memory.

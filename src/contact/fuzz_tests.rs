@@ -7,7 +7,7 @@ use super::{
 use crate::Vec3;
 use crate::geometry::icosphere;
 
-const REACH: Reach = Reach { proximity: 0.06, depth: 0.06, margin: 0.1 };
+const REACH: Reach = Reach { proximity: 0.06, prediction: 0.06, depth: 0.06, margin: 0.1 };
 
 /// Round-off of positions of size 5 over a few operations.
 const ROUND_OFF: f64 = 1e-11;
@@ -176,7 +176,7 @@ fn the_sign_of_a_gap_is_that_of_the_winding_number_and_its_size_the_distance() {
             let points = super::test_scenes::deform(&rest, &mut dice, bend, 0.0);
             bodies.push((&rest, Sides::Outer, points.into_iter().map(|x| turn * x + centre).collect()));
         }
-        let reach = Reach { proximity: 0.2, depth: 0.25, margin: 0.1 };
+        let reach = Reach { proximity: 0.2, prediction: 0.2, depth: 0.25, margin: 0.1 };
         let stage = stage(&bodies, Vec::new(), reach);
         let contacts = all_pairs(&stage);
         for atom in 0..84 {
@@ -195,7 +195,7 @@ fn the_sign_of_a_gap_is_that_of_the_winding_number_and_its_size_the_distance() {
                 assert_eq!(gaps.len(), expected.len(), "seed {seed}, atom {atom} at −{far}");
                 assert!(gaps.iter().zip(&expected).all(|(a, b)| (a - b).abs() < ROUND_OFF), "{gaps:?} {expected:?}");
                 inside += gaps.len();
-            } else if far < reach.proximity {
+            } else if far < reach.prediction {
                 let least = gaps.iter().copied().fold(f64::INFINITY, f64::min);
                 assert!((least - far).abs() < ROUND_OFF, "seed {seed}, atom {atom}: {gaps:?}, distance {far}");
                 outside += 1;
@@ -217,7 +217,7 @@ fn the_smallest_gap_of_two_cells_apart_is_their_distance() {
         let (turn, displacement) = (dice.turn(), dice.vector().normalize());
         let second: Vec<Vec3> =
             rest.positions.iter().map(|x| turn * x + displacement * (2.02 + 0.02 * dice.roll())).collect();
-        let reach = Reach { proximity: 0.3, depth: 0.1, margin: 0.1 };
+        let reach = Reach { proximity: 0.3, prediction: 0.3, depth: 0.1, margin: 0.1 };
         let stage = stage(&[(&rest, Sides::Outer, first), (&rest, Sides::Outer, second)], Vec::new(), reach);
         let (one, other) = stage.positions.split_at(42);
         let mut least = f64::INFINITY;

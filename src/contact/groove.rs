@@ -9,6 +9,10 @@ use crate::Vec3;
 /// A facet that rises by no more than this sine lies in the plane of the one beside it, as far as normals of seven digits tell.
 const FLAT: f64 = 1e-6;
 
+/// How far behind the plane of a wall an atom may be that it holds, over the prediction: what sweeps leave. One that is farther behind has not
+/// come through the wall, which held it; it has come around a corner, and what it is nearest to tells how deep it is.
+const PASSED: f64 = 0.01;
+
 /// Adds to contacts with surfaces that have two outsides the facets beside them that rise towards the atom, where it is nearer to the
 /// side that they share than `within` (µm). The region in front of a groove is that in front of the planes of both walls, eq. (contacts.10), so that
 /// the second plane is no obstacle before its facet is one; found by the point where the distance is least, an atom at a
@@ -42,7 +46,8 @@ pub fn add_walls_of_grooves(scene: &Scene, positions: &[Vec3], within: f64, cont
                 continue;
             }
             let wall = wall(&near, shape.corners(other, there), &start, &along, position, known);
-            let is_near = |wall: &AtomContact| wall.gap < scene.reach.proximity && wall.gap >= -scene.reach.depth;
+            let farthest = scene.reach.prediction;
+            let is_near = |wall: &AtomContact| (-PASSED * farthest..farthest).contains(&wall.gap);
             contacts.atoms.extend(wall.filter(is_near));
         }
     }

@@ -241,7 +241,7 @@ mod tests {
     use super::*;
     use crate::geometry::icosphere;
 
-    const REACH: Reach = Reach { proximity: 0.1, depth: 0.1, margin: 0.1 };
+    const REACH: Reach = Reach { proximity: 0.1, prediction: 0.1, depth: 0.1, margin: 0.1 };
 
     #[test]
     fn middles_are_looked_for_among_neighbours_alone() {

@@ -88,7 +88,7 @@ pub(super) fn find_obstacle_contacts(
     for (position, atom) in atoms.filter(|(_, atom)| shape.is_outer((atom - first) as usize)) {
         for (obstacle, number) in scene.obstacles.iter().zip(0..) {
             let Beside { gap, normal } = obstacle.beside(position);
-            if gap < scene.reach.proximity {
+            if gap < scene.reach.prediction {
                 push(contacts, ObstacleContact { atom, obstacle: number, gap, normal: normal.into() });
             }
         }

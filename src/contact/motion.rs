@@ -132,7 +132,7 @@ mod tests {
     use super::super::{Reach, Sides};
     use super::*;
 
-    const REACH: Reach = Reach { proximity: 0.2, depth: 0.2, margin: 0.1 };
+    const REACH: Reach = Reach { proximity: 0.2, prediction: 0.2, depth: 0.2, margin: 0.1 };
 
     #[test]
     fn motion_is_never_less_than_it_is_and_hardly_more() {

@@ -178,7 +178,7 @@ mod tests {
     use super::super::test_scenes::{Dice, packed_stage};
     use super::*;
 
-    const REACH: Reach = Reach { proximity: 0.2, depth: 0.2, margin: 0.1 };
+    const REACH: Reach = Reach { proximity: 0.2, prediction: 0.2, depth: 0.2, margin: 0.1 };
 
     /// The least distance of points of two facets, roughly: never less than it is.
     fn apart(one: &[Vec3; 3], other: &[Vec3; 3]) -> f64 {

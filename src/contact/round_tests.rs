@@ -8,7 +8,7 @@ use crate::Vec3;
 use crate::geometry::{Surface, icosphere};
 
 /// With a margin that is wider than anything moves here.
-const REACH: Reach = Reach { proximity: 0.2, depth: 0.2, margin: 2.5 };
+const REACH: Reach = Reach { proximity: 0.2, prediction: 0.2, depth: 0.2, margin: 2.5 };
 
 /// A ball with a groove along z whose walls come to each other: none at 0, shut at 1.
 fn grooved(ball: &Surface, groove: f64) -> Vec<Vec3> {
@@ -70,10 +70,10 @@ fn a_body_that_folds_touches_itself_at_once_and_one_that_is_round_does_not() {
 }
 
 #[test]
-fn pairs_of_a_round_body_with_itself_are_not_kept_however_wide_the_proximity() {
+fn pairs_of_a_round_body_with_itself_are_not_kept_however_wide_the_prediction() {
     let ball = icosphere(1.0, 3);
-    let pairs = |proximity: f64| {
-        let reach = Reach { proximity, depth: proximity, margin: proximity };
+    let pairs = |far: f64| {
+        let reach = Reach { proximity: far, prediction: far, depth: far, margin: far };
         // As if surfaces touched themselves wherever they are near enough.
         let shape = Shape::new(&ball, Sides::Outer, 0.0);
         let scene = Scene::new(vec![shape], &[0], Vec::new(), reach);
@@ -105,7 +105,7 @@ fn the_least_cosine_is_that_of_the_steepest_wall() {
 #[test]
 fn what_begins_round_does_not_end_far_from_it() {
     let ball = icosphere(1.0, 3);
-    let reach = Reach { proximity: 4.0, depth: 4.0, margin: 0.1 };
+    let reach = Reach { proximity: 4.0, prediction: 4.0, depth: 4.0, margin: 0.1 };
     let scene = Scene::new(vec![Shape::new(&ball, Sides::Outer, 0.0)], &[0], Vec::new(), reach);
     let cosine = |points: &[Vec3]| least_cosine(&ball.facets, |atom| points[atom], centre(points));
     let before = grooved(&ball, 0.3);

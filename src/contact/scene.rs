@@ -8,11 +8,15 @@ use super::shape::{Shape, Sides};
 use crate::Vec3;
 use crate::geometry::Obstacle;
 
-/// How near is a contact. All three are lengths in µm.
+/// How near is a contact. All are lengths in µm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reach {
-    /// Pairs with a gap below this are contacts. Default in experiments: a tenth of the mean edge, a fifth where contacts only push.
+    /// Pairs with a gap below this touch: what surfaces do to each other besides pushing goes by it, and what counts touches. At most the
+    /// prediction. Default in experiments: a tenth of the mean edge.
     pub proximity: f64,
+    /// Pairs with a gap below this are found as contacts, which keep apart what would meet in a step. It bounds steps and is no part of
+    /// what cells do.
+    pub prediction: f64,
     /// Atoms and edges that are inside another surface by no more than this are found. It must be less than the
     /// thickness of the thinnest surface.
     pub depth: f64,
@@ -24,17 +28,22 @@ pub struct Reach {
 impl Reach {
     /// The farthest that matters now, µm.
     pub(super) fn range(&self) -> f64 {
-        self.proximity.max(self.depth)
+        self.prediction.max(self.depth)
     }
 
     /// The largest displacement of atoms between two detections for which nothing is missed, µm: half of the smaller
-    /// of proximity and depth, eq. (contacts.6).
+    /// of prediction and depth, eq. (contacts.6).
     ///
     /// When no atom moves farther, whatever was outside and comes to touch was either a contact before or ends inside
     /// by no more than the depth, and is found there. Self-contact and sheets with two outer sides know no inside:
     /// only what was a contact before, and is held by it, cannot pass.
     pub fn safe_travel(&self) -> f64 {
-        0.5 * self.proximity.min(self.depth)
+        0.5 * self.prediction.min(self.depth)
+    }
+
+    /// Whether surfaces with such a gap (µm) touch.
+    pub fn touches(&self, gap: f64) -> bool {
+        gap < self.proximity
     }
 }
 
@@ -99,7 +108,7 @@ impl Scene {
         reach: Reach,
     ) -> Self {
         let shapes = shapes.into();
-        let lengths = [reach.proximity, reach.depth, reach.margin];
+        let lengths = [reach.proximity, reach.prediction, reach.depth, reach.margin];
         assert!(lengths.iter().all(|length| length.is_finite() && *length >= 0.0), "a reach below zero: {reach:?}");
         let levels: Vec<Levels> = shapes.iter().map(|shape| Levels::of(shape.facets.len())).collect();
         let mut bodies = Vec::with_capacity(shape_of_body.len());

@@ -54,7 +54,7 @@ pub struct Shape {
 impl Shape {
     /// Prepares a mesh at rest. `clearance` (µm) is how far along the mesh an atom does not touch its own surface: the
     /// facets around it, those that share an atom with them, and all that is connected to these and closer at rest.
-    /// Choose it above the proximity at which contacts are found, else a fine mesh touches itself at rest.
+    /// Choose it above the prediction, at which contacts are found, else a fine mesh touches itself at rest.
     ///
     /// # Panics
     /// When a facet names an atom that the surface does not have.

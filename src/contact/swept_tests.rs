@@ -78,7 +78,7 @@ fn a_cell_that_flies_through_a_sheet_in_one_step_is_seen_to_pass() {
     let flat = crate::geometry::sheet(3.0, 3.0, 3, 3);
     let rest = icosphere(0.5, 1);
     let above: Vec<Vec3> = rest.positions.iter().map(|x| x + Vec3::new(0.1, 0.2, 0.55)).collect();
-    let reach = Reach { proximity: 0.1, depth: 0.05, margin: 2.5 };
+    let reach = Reach { proximity: 0.1, prediction: 0.1, depth: 0.05, margin: 2.5 };
     let bodies = [(&flat, Sides::Both, flat.positions.clone()), (&rest, Sides::Outer, above)];
     let stage = super::test_scenes::stage(&bodies, Vec::new(), reach);
     let (mut detector, mut contacts) = (Detector::default(), Contacts::default());
@@ -105,7 +105,7 @@ fn a_cell_that_flies_through_a_sheet_in_one_step_is_seen_to_pass() {
 
 #[test]
 fn atoms_that_go_through_a_surface_by_less_than_the_safe_travel_are_found_inside() {
-    let reach = Reach { proximity: 0.1, depth: 0.1, margin: 0.05 };
+    let reach = Reach { proximity: 0.1, prediction: 0.1, depth: 0.1, margin: 0.05 };
     let mut dice = Dice(8);
     let mut entered = 0;
     for _ in 0..60 {

@@ -35,7 +35,7 @@ pub struct Stage {
 /// Bodies in a scene, from surfaces at rest and positions of their atoms.
 pub fn stage(bodies: &[(&Surface, Sides, Vec<Vec3>)], obstacles: Vec<Obstacle>, reach: Reach) -> Stage {
     let shapes: Vec<Shape> =
-        bodies.iter().map(|(rest, sides, _)| Shape::new(rest, *sides, 1.5 * reach.proximity)).collect();
+        bodies.iter().map(|(rest, sides, _)| Shape::new(rest, *sides, 1.5 * reach.prediction)).collect();
     let scene = Scene::new(shapes, &(0..bodies.len()).collect::<Vec<_>>(), obstacles, reach);
     Stage { scene, positions: bodies.iter().flat_map(|body| body.2.iter().copied()).collect() }
 }
@@ -53,7 +53,8 @@ pub fn deform(rest: &Surface, dice: &mut Dice, bend: f64, noise: f64) -> Vec<Vec
 /// Three to eight bodies of all kinds close together, many of them overlapping, and two obstacles.
 pub fn random_stage(seed: u64) -> Stage {
     let mut dice = Dice(seed);
-    let reach = Reach { proximity: 0.15 + 0.1 * dice.roll(), depth: 0.2, margin: 0.15 };
+    let near = 0.15 + 0.1 * dice.roll();
+    let reach = Reach { proximity: near, prediction: near, depth: 0.2, margin: 0.15 };
     let kinds = [
         (icosphere(1.0, 1), Sides::Outer),
         (icosphere(1.0, 0), Sides::Outer),
@@ -88,7 +89,7 @@ pub fn packed_stage(count: usize, reach: Reach, seed: u64) -> Stage {
     const HALF_DISTANCE: f64 = 0.82;
     let mut dice = Dice(seed);
     let rest = icosphere(1.0, 1);
-    let shape = Shape::new(&rest, Sides::Outer, 1.5 * reach.proximity);
+    let shape = Shape::new(&rest, Sides::Outer, 1.5 * reach.prediction);
     let side = (1..).find(|side: &usize| side.pow(3).div_ceil(2) >= count).expect("a cube large enough");
     let cube = (0..side.pow(3)).map(|i| [i % side, i / side % side, i / side / side]);
     let sites = cube.filter(|site| site.iter().sum::<usize>() % 2 == 0).take(count);

@@ -93,7 +93,7 @@ impl Stride {
         let motion = Motion { mean, beside: beside.sqrt(), farthest: farthest.sqrt() };
         let to_itself = motion.beside.min(motion.farthest) / safe;
         let to_itself = match itself {
-            // A facet tilts by 0.1 in so little, where the proximity is half an edge: what was round ends with more than (contacts.16) asks.
+            // A facet tilts by 0.1 in so little, where the prediction is half an edge: what was round ends with more than (contacts.16) asks.
             _ if to_itself < LEAST => 0.0,
             Itself::Never => 0.0,
             Itself::Closed(facets) => to_itself_if_closed(to_itself, facets, (from, middle), (to, middle + mean)),

@@ -6,7 +6,7 @@ use super::{Detector, Itself, Reach, Scene, Sides, Stride, atom_meets_facet, clo
 use crate::Vec3;
 use crate::geometry::Obstacle;
 
-const REACH: Reach = Reach { proximity: 0.2, depth: 0.2, margin: 0.1 };
+const REACH: Reach = Reach { proximity: 0.2, prediction: 0.2, depth: 0.2, margin: 0.1 };
 
 fn measure(detector: &mut Detector, scene: &Scene, before: &[Vec3], after: &[Vec3]) -> f64 {
     let strides: Vec<Stride> = (0..scene.bodies.len() as u32)
@@ -56,7 +56,7 @@ fn what_goes_together_goes_far_and_what_is_told_depends_on_the_step_alone() {
 }
 
 #[test]
-fn where_a_step_is_safe_nothing_met_that_was_farther_apart_than_the_proximity() {
+fn where_a_step_is_safe_nothing_met_that_was_farther_apart_than_the_prediction() {
     let mut dice = Dice(11);
     let (mut safe_steps, mut near) = (0, 0);
     for seed in 0..12 {
@@ -78,7 +78,7 @@ fn where_a_step_is_safe_nothing_met_that_was_farther_apart_than_the_proximity() 
     assert!(safe_steps > 3 && near > 0, "a test of nothing: {safe_steps} {near}");
 }
 
-/// Looks at all pairs of different bodies; those that meet must have been within the proximity. Returns how many do.
+/// Looks at all pairs of different bodies; those that meet must have been within the prediction. Returns how many do.
 fn meetings(scene: &Scene, before: &[Vec3], after: &[Vec3]) -> usize {
     let at = |atom: u32| [before[atom as usize], after[atom as usize]];
     let (mut met, bodies) = (0, scene.bodies.len() as u32);
@@ -91,7 +91,7 @@ fn meetings(scene: &Scene, before: &[Vec3], after: &[Vec3]) -> usize {
                     let facet = [0, 1].map(|end| corners.map(|corner| corner[end]));
                     if atom_meets_facet(at(atom), facet, 0.0).is_some() {
                         let gap = closest_on_facet(before[atom as usize], facet[0]).offset.norm();
-                        assert!(gap <= scene.reach.proximity, "{gap}");
+                        assert!(gap <= scene.reach.prediction, "{gap}");
                         met += 1;
                     }
                 }

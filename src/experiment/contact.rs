@@ -85,10 +85,15 @@ pub enum Zones {
 pub struct Contact {
     /// What cells do that touch.
     pub model: ContactModel,
-    /// Gap below which surfaces touch; a tenth of the smallest mean edge when absent, a fifth where no surfaces stick or rub.
+    /// Gap below which surfaces touch; a tenth of the smallest mean edge when absent, or `prediction` where that is less.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-exclusive-minimum" = 0))]
     pub proximity: Option<Length>,
+    /// Gap below which a step keeps surfaces apart that might meet in it: cells go half of it past each other in a step. It changes steps, not
+    /// what touches. A fifth of the smallest mean edge when absent, or `proximity` where that is more.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-exclusive-minimum" = 0))]
+    pub prediction: Option<Length>,
     /// Opening below which surfaces count as area of contact in what is recorded; 0.3 um when absent, or ten of the smallest mean edge
     /// where that is less.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -154,17 +159,6 @@ impl Contact {
             ContactModel::Links => Recorded::WithLinks,
             ContactModel::VirtualAdhesives => Recorded::WithAdhesives,
         }
-    }
-
-    /// Whether contacts do nothing but push: none sticks or resists sliding. (What rubs or has bonds has a strength.)
-    pub(super) fn only_pushes(&self) -> bool {
-        let holds = |strength: Option<Stress>, energy: Option<LineStiffness>, shear: Option<Stress>| {
-            let stresses = [strength, shear].into_iter().flatten().map(|stress| stress.value());
-            stresses.chain(energy.map(|energy| energy.value())).any(|value| value > 0.0)
-        };
-        self.model == ContactModel::Cohesion
-            && !holds(self.strength, self.energy, self.shear_strength)
-            && !self.between.iter().any(|pair| holds(pair.strength, pair.energy, pair.shear_strength))
     }
 
     /// Whether any surfaces have bonds.

@@ -39,7 +39,8 @@ fn pair(order: Order, dt: f64, own: bool) -> (Model, State) {
     let mut table = CohesionTable::new(1, 0);
     table.stick(0, 0, Cohesive { strength: 2.0, work: 2.0, ..Cohesive::default() });
     table.resolve(&[model.kinds[0].edge]);
-    let mut contact = ContactModel::new(&model.kinds, &[], Reach { proximity: 0.1, depth: 0.1, margin: 0.1 });
+    let mut contact =
+        ContactModel::new(&model.kinds, &[], Reach { proximity: 0.1, prediction: 0.1, depth: 0.1, margin: 0.1 });
     contact.law = Law::Cohesion(table);
     model.contact = Some(contact);
     let state = State::new(&model, &positions);

@@ -29,7 +29,8 @@ pub fn note_meetings(model: &Model, to: &mut State, ws: &mut Workspace) {
             let counts = |body: usize| body != own && by.counts(to.kind_of(body).0 == number);
             ws.touched.clear();
             ws.touched.resize(kind.atoms(), false);
-            let meets = near.iter().filter(|contact| counts(contact.body(scene) as usize));
+            let touching = near.iter().filter(|contact| scene.reach.touches(contact.gap));
+            let meets = touching.filter(|contact| counts(contact.body(scene) as usize));
             meets.for_each(|contact| ws.touched[(contact.atom - begin) as usize] = true);
             let (positions, touched) = (Positions { kind, now, cell }, &ws.touched);
             state.note_touch(positions.touched(touched), |direction| positions.met(pods, direction, touched));

@@ -53,6 +53,7 @@ impl Touch {
         self.positions.clear();
         self.positions.extend(frame.positions.iter().map(|p| Vec3::from(*p)));
         self.detector.detect(&contact.scene, &self.positions, &mut self.found);
+        self.found.keep_touching(&contact.scene.reach);
         let bodies = contact.scene.bodies.len();
         self.find_partners(&contact.scene);
         let mut touching = vec![0_u32; bodies];

@@ -46,7 +46,8 @@ fn adaptive(largest: f64) -> Integrator {
 }
 
 fn reach(edge: f64) -> Reach {
-    Reach { proximity: 0.1 * edge, depth: 0.1 * edge, margin: 0.1 * edge }
+    let near = 0.1 * edge;
+    Reach { proximity: near, prediction: near, depth: near, margin: near }
 }
 
 /// A model of these kinds in which all stick with a strength.

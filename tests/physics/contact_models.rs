@@ -45,7 +45,8 @@ fn model(mut kinds: Vec<Kind>, until: f64, binds: impl Fn(usize, usize) -> bool)
     }
     let (number, edge) = (kinds.len(), kinds[0].edge);
     let near = 0.1 * edge;
-    let mut contact = ContactModel::new(&kinds, &[], Reach { proximity: near, depth: near, margin: near });
+    let mut contact =
+        ContactModel::new(&kinds, &[], Reach { proximity: near, prediction: near, depth: near, margin: near });
     let mut table = LinkTable::new(number, edge);
     for one in 0..number {
         for other in (0..number).filter(|other| binds(one, *other)) {

@@ -32,6 +32,7 @@ mod ordering;
 mod own_stiffness;
 mod own_stiffness_touching;
 mod population;
+mod prediction;
 mod pressure;
 mod pseudopods;
 mod receptors;

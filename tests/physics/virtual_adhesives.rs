@@ -51,7 +51,8 @@ fn model(mut kinds: Vec<Kind>, method: Method, dt: f64, until: f64, kappa: f64) 
     }
     let near = 0.1 * kinds[0].edge;
     let integrator = Integrator { method, size: StepSize::Fixed(dt) };
-    let mut contact = ContactModel::new(&kinds, &[], Reach { proximity: near, depth: near, margin: near });
+    let mut contact =
+        ContactModel::new(&kinds, &[], Reach { proximity: near, prediction: near, depth: near, margin: near });
     contact = contact.suited_to(integrator.size);
     let (between, on_obstacles) = (vec![kappa; kinds.len() * kinds.len()], Vec::new());
     contact.law = Law::VirtualAdhesives(AdhesiveTable { between, on_obstacles, zones: Zones::Merged });
@@ -141,7 +142,7 @@ fn a_plane_holds_what_is_glued_to_it_below_kappa_and_lets_go_above_as_chemistry_
         let mut model = model(vec![lone], IMPLICIT, dt, 2.0, 0.0);
         model.obstacles = vec![Obstacle::plane("floor", Vec3::zeros(), Vec3::z())];
         let near = 0.1 * model.kinds[0].edge;
-        let reach = Reach { proximity: near, depth: near, margin: near };
+        let reach = Reach { proximity: near, prediction: near, depth: near, margin: near };
         let mut contact = ContactModel::new(&model.kinds, &model.obstacles, reach).suited_to(model.integrator.size);
         let table = AdhesiveTable { between: vec![0.0], on_obstacles: vec![kappa], zones: Zones::Merged };
         contact.law = Law::VirtualAdhesives(table);

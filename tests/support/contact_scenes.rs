@@ -328,7 +328,9 @@ impl Scene {
         }
         let edge = kinds.iter().map(|kind| kind.edge).fold(f64::INFINITY, f64::min);
         let near = self.proximity * edge;
-        let mut contact = ContactModel::new(&kinds, &planes, Reach { proximity: near, depth: near, margin: near });
+        // What sticks does so where it touches, however far off contacts are found.
+        let reach = Reach { proximity: near.min(0.1 * edge), prediction: near, depth: near, margin: near };
+        let mut contact = ContactModel::new(&kinds, &planes, reach);
         for (one, row) in self.between.iter().enumerate() {
             for (other, &[tensile, shear]) in row.iter().enumerate() {
                 contact.stick(one, other, Strength { tensile, shear, energy: 0.0 });

@@ -11,41 +11,61 @@ use crate::sim::contact::{
 use crate::sim::{Kind, Obstacle};
 use crate::units::{LineStiffness, Stress, SurfaceDrag};
 
-/// The proximity over the smallest mean edge where the user names none, and where contacts only push besides: then all that depends on it is
-/// how far cells that touch may go in a step.
+/// The proximity over the smallest mean edge where the user names none.
 const PROXIMITY: f64 = 0.1;
-const PROXIMITY_OF_PUSHES: f64 = 0.2;
 
-/// The largest proximity over the smallest mean edge: above it an atom is near everything around it.
+/// The prediction likewise, where the proximity is not wider.
+const PREDICTION: f64 = 0.2;
+
+/// The largest of both over the smallest mean edge: above it an atom is near everything around it.
 const LARGEST: f64 = 0.5;
 
 /// How near is a contact, in an experiment that has contacts.
 ///
 /// # Errors
-/// A proximity that does not fit the meshes.
+/// A proximity or a prediction that does not fit the meshes, and a prediction below the proximity.
 pub fn reach(document: &Document, kinds: &[Kind]) -> Result<Option<Reach>> {
     let Some(text) = &document.experiment.contact else { return Ok(None) };
     let smallest = kinds.iter().min_by(|one, other| one.edge.total_cmp(&other.edge));
     let edge = smallest.map_or(1.0, |kind| kind.edge);
-    let default = if text.only_pushes() { PROXIMITY_OF_PUSHES } else { PROXIMITY };
-    let proximity = text.proximity.map_or(default * edge, |proximity| proximity.value());
-    if let Some(kind) = smallest.filter(|_| proximity > LARGEST * edge) {
-        let fault = Fault::new(format!(
-            "a proximity of {} um is too large for the mesh of type `{}`, whose mean edge is {} um",
-            short(proximity),
-            kind.name,
-            short(edge)
-        ))
-        .help(format!(
-            "give at most {} um, or leave it out: then it is {} of the edge",
-            short(LARGEST * edge),
-            if text.only_pushes() { "a fifth" } else { "a tenth" }
-        ));
-        let location = document.location("contact.proximity", "above half of the mean edge");
-        return Err(Error::input(location.into_iter().fold(fault, Fault::at)));
+    let [proximity, named] = [text.proximity, text.prediction].map(|length| length.map(|length| length.value()));
+    for (key, length, share) in [("proximity", proximity, "a tenth"), ("prediction", named, "a fifth")] {
+        if let (Some(kind), Some(length)) = (smallest, length.filter(|length| *length > LARGEST * edge)) {
+            return Err(too_large(document, key, (length, kind), share));
+        }
     }
-    let depth = if text.model == Text::Penalty { PENALTY_DEPTH * edge } else { proximity };
-    Ok(Some(Reach { proximity, depth, margin: proximity.min(PROXIMITY * edge) }))
+    let proximity = proximity.unwrap_or_else(|| named.unwrap_or(f64::INFINITY).min(PROXIMITY * edge));
+    let prediction = named.unwrap_or(proximity.max(PREDICTION * edge));
+    if prediction < proximity {
+        return Err(below_proximity(document, prediction, proximity));
+    }
+    let depth = if text.model == Text::Penalty { PENALTY_DEPTH * edge } else { prediction };
+    Ok(Some(Reach { proximity, prediction, depth, margin: prediction.min(PROXIMITY * edge) }))
+}
+
+/// The fault of a length, by its key, that is too large for a mesh; where it is absent it is this share of the edge.
+fn too_large(document: &Document, key: &str, (length, kind): (f64, &Kind), share: &str) -> Error {
+    let fault = Fault::new(format!(
+        "a {key} of {} um is too large for the mesh of type `{}`, whose mean edge is {} um",
+        short(length),
+        kind.name,
+        short(kind.edge)
+    ))
+    .help(format!("give at most {} um, or leave it out: then it is {share} of the edge", short(LARGEST * kind.edge)));
+    let location = document.location(&format!("contact.{key}"), "above half of the mean edge");
+    Error::input(location.into_iter().fold(fault, Fault::at))
+}
+
+/// The fault of a step that would not see all that touches.
+fn below_proximity(document: &Document, prediction: f64, proximity: f64) -> Error {
+    let fault = Fault::new(format!(
+        "a prediction of {} um is below the proximity, {} um: what touches would not be seen",
+        short(prediction),
+        short(proximity)
+    ))
+    .help("give at least the proximity, or leave it out: then it is a fifth of the edge, or the proximity where that is more");
+    let location = document.location("contact.prediction", "below `proximity`");
+    Error::input(location.into_iter().fold(fault, Fault::at))
 }
 
 /// The shortest and the longest range of attraction over the mean edge of a mesh: below the one a facet hardly sees what its neighbour

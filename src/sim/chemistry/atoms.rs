@@ -120,7 +120,9 @@ fn read(
                 let is_meant = |body: usize| body != own && with.is_none_or(|number| state.kind_of(body).0 == number);
                 let touches = |atom: usize| {
                     let mut of_atom = near.iter().filter(|contact| contact.atom as usize == begin as usize + atom);
-                    scene.is_some_and(|scene| of_atom.any(|near| is_meant(near.body(scene) as usize)))
+                    scene.is_some_and(|scene| {
+                        of_atom.any(|near| scene.reach.touches(near.gap) && is_meant(near.body(scene) as usize))
+                    })
                 };
                 numbers.extend((0..atoms).map(|atom| truth(touches(atom))));
             }

@@ -78,7 +78,9 @@ pub(super) fn measure_cells(
                 let at = near.partition_point(|contact| contact.atom < first + atom);
                 let mut of_atom = near[at..].iter().take_while(|contact| contact.atom == first + atom);
                 let own = now.first_cell + cell;
-                contact.is_some_and(|contact| of_atom.any(|near| near.body(&contact.scene) as usize != own))
+                contact.is_some_and(|ContactScene { scene, .. }| {
+                    of_atom.any(|near| scene.reach.touches(near.gap) && near.body(scene) as usize != own)
+                })
             });
             out.rest = *rest;
             out.velocity = Vec3::from(now.mean_velocities[cell]);

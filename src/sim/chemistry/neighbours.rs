@@ -31,7 +31,8 @@ impl Neighbours {
             for cell in 0..now.cells() {
                 let (first, near) = near_cell(kind, now, found, cell);
                 let own = (now.first_cell + cell) as u32;
-                if near.iter().all(|contact| contact.body(scene) == own) {
+                let touches = |contact: &AtomContact| contact.body(scene) != own && scene.reach.touches(contact.gap);
+                if !near.iter().any(touches) {
                     continue;
                 }
                 positions.clear();
@@ -40,8 +41,8 @@ impl Neighbours {
                 let begin = pairs.len();
                 for of_atom in near.chunk_by(|one, next| one.atom == next.atom) {
                     let area = shapes.areas[(of_atom[0].atom - first) as usize];
-                    let others = of_atom.iter().map(|contact| contact.body(scene));
-                    for (at, other) in others.clone().enumerate().filter(|(_, other)| *other != own) {
+                    let others = of_atom.iter().filter(|contact| touches(contact)).map(|contact| contact.body(scene));
+                    for (at, other) in others.clone().enumerate() {
                         // An atom that is near several facets of a cell has its area once.
                         if others.clone().take(at).all(|before| before != other) {
                             match pairs[begin..].iter_mut().find(|pair| pair.1 == other) {

@@ -122,11 +122,11 @@ impl Written<'_> {
             let kind = model.kind_of(body as u32);
             let cohesive = if own { None } else { model.cohesion_of(body as u32, Faced::Body(on)) };
             let area = match cohesive {
+                _ if !scene.reach.touches(contact.gap) => 0.0,
                 Some(_) => area_between(facing, contact.atom, Faced::Body(on)),
                 None => model.areas[kind][(contact.atom - scene.bodies[body].first_atom) as usize],
             };
-            let area = area / contacts_on_body(scene, found, number) as f64;
-            let area = SHARE * area;
+            let area = SHARE * area / touching_on_body(scene, found, number).max(1) as f64;
             let area = area * controls.adhesion_of(body) * controls.adhesion_of(other);
             let [v, w] = contact.second_weights.map(f64::from);
             let area = area
@@ -196,6 +196,7 @@ impl Written<'_> {
             let strength = model.strength_on(body, contact.obstacle);
             let cohesive = model.cohesion_of(body as u32, Faced::Obstacle(contact.obstacle));
             let area = match cohesive {
+                _ if !scene.reach.touches(contact.gap) => 0.0,
                 Some(_) => area_between(facing, contact.atom, Faced::Obstacle(contact.obstacle)),
                 None => model.areas[kind][(contact.atom - scene.bodies[body].first_atom) as usize],
             };
@@ -215,10 +216,11 @@ impl Written<'_> {
     }
 }
 
-/// How many contacts the atom of a contact has with the body of it: in a groove in two or more, which share what it bears.
-fn contacts_on_body(scene: &Scene, found: &Contacts, number: usize) -> usize {
+/// At how many points the atom of a contact touches the body of it: in a groove at two or more, which share what it bears.
+fn touching_on_body(scene: &Scene, found: &Contacts, number: usize) -> usize {
     let this = &found.atoms[number];
     let same = |other: &&AtomContact| other.atom == this.atom && other.body(scene) == this.body(scene);
-    let before = found.atoms[..number].iter().rev().take_while(same).count();
-    before + found.atoms[number..].iter().take_while(same).count()
+    let touches = |other: &&AtomContact| scene.reach.touches(other.gap);
+    let before = found.atoms[..number].iter().rev().take_while(same).filter(touches).count();
+    before + found.atoms[number..].iter().take_while(same).filter(touches).count()
 }

@@ -68,6 +68,7 @@ fn cause_of(model: &Model, state: &State, cells: &[(String, usize); 2]) -> Cause
     let (mut positions, mut found) = (Vec::new(), Contacts::default());
     gather_positions(model, contact, &state.kinds, &mut positions);
     Detector::default().detect(&contact.scene, &positions, &mut found);
+    found.keep_touching(&contact.scene.reach);
     let is_surrounded = |body: u32| surrounded(contact, &found, body) > SURROUNDED;
     if bodies.into_iter().any(is_surrounded) { Cause::Crowded } else { Cause::Open }
 }

@@ -83,7 +83,7 @@ mod tests {
     use crate::sim::kind::Kind;
     use crate::sim::state::KindState;
 
-    const REACH: Reach = Reach { proximity: 0.1, depth: 0.1, margin: 0.1 };
+    const REACH: Reach = Reach { proximity: 0.1, prediction: 0.1, depth: 0.1, margin: 0.1 };
 
     /// Two balls of 12 atoms and 30 edges each.
     fn two_balls() -> (ContactModel, Vec<KindState>) {

@@ -53,7 +53,7 @@ impl ContactModel {
     /// Contacts of all cells of these kinds with each other, with themselves and with obstacles, without any strength.
     pub fn new(kinds: &[Kind], obstacles: &[Obstacle], reach: Reach) -> Self {
         let sides = |kind: &Kind| if kind.closed { Sides::Outer } else { Sides::Both };
-        let shapes = kinds.iter().map(|kind| Shape::new(&kind.rest, sides(kind), 1.5 * reach.proximity));
+        let shapes = kinds.iter().map(|kind| Shape::new(&kind.rest, sides(kind), 1.5 * reach.prediction));
         let edges: Vec<f64> = kinds.iter().map(|kind| kind.edge).collect();
         let edge = edges.iter().copied().fold(f64::INFINITY, f64::min);
         Self {

@@ -75,7 +75,7 @@ mod tests {
     use crate::sim::kind::Kind;
     use crate::sim::state::KindState;
 
-    const REACH: Reach = Reach { proximity: 0.1, depth: 0.1, margin: 0.1 };
+    const REACH: Reach = Reach { proximity: 0.1, prediction: 0.1, depth: 0.1, margin: 0.1 };
 
     fn scene(surfaces: Vec<Surface>) -> (ContactModel, Vec<Vec3>) {
         let kinds: Vec<Kind> = surfaces.into_iter().map(|rest| Kind::new("body", rest, Vec::new())).collect();

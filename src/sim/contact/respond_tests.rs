@@ -34,7 +34,7 @@ fn cells(count: usize, order: Order, is_viscous: bool) -> (Model, State) {
     kind.use_tangent(false);
     assert!(kind.tangent.is_some());
     let kind = kind.for_cells(count);
-    let reach = Reach { proximity: 0.1, depth: 0.1, margin: 0.1 };
+    let reach = Reach { proximity: 0.1, prediction: 0.1, depth: 0.1, margin: 0.1 };
     let turned = |cell: usize| -> Vec<Vec3> {
         let turn = Rotation3::from_euler_angles(0.3 * cell as f64, 0.1 + 0.2 * cell as f64, 0.5);
         kind.rest.positions.iter().map(|x| turn * x + Vec3::new(11.0 * cell as f64, 0.0, 0.0)).collect()

@@ -12,7 +12,7 @@ use crate::sim::controls::Controls;
 /// A gap that no step closes, µm: what only rubs never pushes.
 const FAR: f32 = 1e6;
 
-/// Adds rows for atoms around which surfaces are in contact, eq. (adhesion.19), and which have no contact with what they face. They rub
+/// Adds rows for atoms around which surfaces are in contact, eq. (adhesion.19), and which do not touch what they face. They rub
 /// and do nothing else. Their force is found anew in each step: friction is known from the motion alone.
 pub fn write_rubbing(
     model: &ContactScene,
@@ -64,22 +64,24 @@ pub fn write_rubbing(
     }
 }
 
-/// The friction with which an atom rubs on what it faces where it has no contact with it, pN·s/µm³; 0 where it has one.
+/// The friction with which an atom rubs on what it faces where it does not touch that, pN·s/µm³; 0 where it does.
 pub(super) fn rubs(model: &ContactScene, found: &Contacts, this: &Facing) -> f64 {
     let friction = model.cohesion_of(model.body_of(this.atom), this.other).map_or(0.0, |cohesive| cohesive.friction);
     if friction == 0.0 || touches(model, found, this) { 0.0 } else { friction }
 }
 
-/// Whether an atom has a contact with what it faces.
+/// Whether an atom touches what it faces.
 fn touches(model: &ContactScene, found: &Contacts, this: &Facing) -> bool {
+    let reach = &model.scene.reach;
     match this.other {
         Faced::Body(other) => {
             let first = found.atoms.partition_point(|near| near.atom < this.atom);
             let mut of_atom = found.atoms[first..].iter().take_while(|near| near.atom == this.atom);
-            of_atom.any(|near| near.body(&model.scene) == other)
+            of_atom.any(|near| reach.touches(near.gap) && near.body(&model.scene) == other)
         }
         Faced::Obstacle(obstacle) => {
-            found.obstacles.binary_search_by_key(&(this.atom, obstacle), |near| (near.atom, near.obstacle)).is_ok()
+            let at = found.obstacles.binary_search_by_key(&(this.atom, obstacle), |near| (near.atom, near.obstacle));
+            at.is_ok_and(|at| reach.touches(found.obstacles[at].gap))
         }
     }
 }

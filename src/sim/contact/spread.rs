@@ -62,7 +62,7 @@ fn relieve(model: &ContactScene, found: &Contacts, controls: &Controls, relief: 
     let body_of = |atom: u32| scene.body_of_atom(atom) as usize;
     for contact in &found.atoms {
         let (body, other) = (body_of(contact.atom), contact.body(scene) as usize);
-        if body != other {
+        if body != other && scene.reach.touches(contact.gap) {
             let strength = model.strength_between(body, other);
             let of_atom = controls.adhesion_of_atom(contact.atom);
             let energy = SHARE * strength.energy * of_atom * controls.adhesion_of(body) * controls.adhesion_of(other);
@@ -70,7 +70,7 @@ fn relieve(model: &ContactScene, found: &Contacts, controls: &Controls, relief: 
             *relief = relief.max(energy);
         }
     }
-    for contact in &found.obstacles {
+    for contact in found.obstacles.iter().filter(|near| scene.reach.touches(near.gap)) {
         let body = body_of(contact.atom);
         let of_atom = controls.adhesion_of_atom(contact.atom);
         let energy = model.strength_on(body, contact.obstacle).energy * of_atom * controls.adhesion_of(body);

@@ -100,7 +100,7 @@ impl LinkTable {
         };
         before.iter().for_each(|link| add(*link));
         let mut body = 0;
-        for near in &found.atoms {
+        for near in found.atoms.iter().filter(|near| scene.reach.touches(near.gap)) {
             while scene.bodies.get(body + 1).is_some_and(|next| next.first_atom <= near.atom) {
                 body += 1;
             }
@@ -111,7 +111,8 @@ impl LinkTable {
                 add(Link::between(scene, [body as u32, other], [facet, near.facet], positions));
             }
         }
-        for near in found.edges.iter().filter(|near| near.bodies(scene)[0] != near.bodies(scene)[1]) {
+        let touching = found.edges.iter().filter(|near| scene.reach.touches(near.gap));
+        for near in touching.filter(|near| near.bodies(scene)[0] != near.bodies(scene)[1]) {
             if let Some(facets) = facing_at_edges(scene, near, positions) {
                 add(Link::between(scene, near.bodies(scene), facets, positions));
             }

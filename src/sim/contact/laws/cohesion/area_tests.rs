@@ -7,7 +7,7 @@ use crate::contact::test_scenes::{Stage, packed_stage};
 use crate::contact::{Opening, Reach, Shape, Sides, opening_to_facet, opening_to_plane};
 use crate::geometry::{Obstacle, Surface, icosphere, sheet, volume};
 
-const REACH: Reach = Reach { proximity: 0.1, depth: 0.1, margin: 0.1 };
+const REACH: Reach = Reach { proximity: 0.1, prediction: 0.1, depth: 0.1, margin: 0.1 };
 
 /// What is near enough to be in contact, µm.
 const WITHIN: f64 = 0.3;

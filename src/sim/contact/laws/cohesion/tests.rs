@@ -7,7 +7,7 @@ use crate::contact::{Reach, Shape};
 use crate::geometry::{Obstacle, Surface, facet_areas, icosphere, sheet};
 use crate::random::{Purpose, Stream};
 
-const REACH: Reach = Reach { proximity: 0.1, depth: 0.1, margin: 0.1 };
+const REACH: Reach = Reach { proximity: 0.1, prediction: 0.1, depth: 0.1, margin: 0.1 };
 
 /// Bodies of one kind each, all of which stick to each other and to obstacles alike.
 pub(super) fn scene(

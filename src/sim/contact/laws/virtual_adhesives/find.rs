@@ -138,7 +138,7 @@ impl AdhesiveScratch {
             facet.into_iter().for_each(|atom| part(atom, -near.normal.wide()));
         }
         for near in &found.obstacles {
-            if glue.kappa_on(near.atom, near.obstacle) > 0.0 {
+            if glue.kappa_on(near) > 0.0 {
                 part(near.atom, near.normal.wide());
             }
         }

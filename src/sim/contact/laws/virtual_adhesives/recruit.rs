@@ -2,7 +2,7 @@
 
 use super::scratch::{AdhesiveScratch, NONE, Role};
 use super::table::{AdhesiveTable, Zones};
-use crate::contact::{AtomContact, Contacts, Scene};
+use crate::contact::{AtomContact, Contacts, ObstacleContact, Scene};
 use crate::sim::contact::state::ContactState;
 use crate::sim::controls::Controls;
 
@@ -20,20 +20,23 @@ impl Glue<'_> {
         [near.atom, i, j, k]
     }
 
-    /// The bodies of an atom and of the facet that it touches, and how well the two are glued; a body not to itself.
+    /// The bodies of an atom and of the facet that it touches, and how well the two are glued, if it touches; a body not to itself.
     pub(super) fn kappa_of(&self, near: &AtomContact) -> ([u32; 2], f64) {
         let body = self.scene.body_of_atom(near.atom);
         let other = near.body(self.scene);
         let [kind, kind_of_other] = [body, other].map(|body| self.kind_of(body));
         let factors = self.controls.adhesion_of(body as usize) * self.controls.adhesion_of(other as usize);
         let kappa = self.table.between[kind * self.scene.shapes.len() + kind_of_other] * factors;
-        ([body, other], if body == other { 0.0 } else { kappa })
+        ([body, other], if body == other || !self.scene.reach.touches(near.gap) { 0.0 } else { kappa })
     }
 
-    /// How well an atom is glued to an obstacle.
-    pub(super) fn kappa_on(&self, atom: u32, obstacle: u32) -> f64 {
-        let body = self.scene.body_of_atom(atom);
-        let kappa = self.table.on_obstacles[self.kind_of(body) * self.scene.obstacles.len() + obstacle as usize];
+    /// How well an atom is glued to an obstacle that it touches.
+    pub(super) fn kappa_on(&self, near: &ObstacleContact) -> f64 {
+        if !self.scene.reach.touches(near.gap) {
+            return 0.0;
+        }
+        let body = self.scene.body_of_atom(near.atom);
+        let kappa = self.table.on_obstacles[self.kind_of(body) * self.scene.obstacles.len() + near.obstacle as usize];
         kappa * self.controls.adhesion_of(body as usize)
     }
 
@@ -74,7 +77,7 @@ impl AdhesiveScratch {
             }
         }
         for near in &found.obstacles {
-            let kappa = glue.kappa_on(near.atom, near.obstacle);
+            let kappa = glue.kappa_on(near);
             if kappa > 0.0 {
                 let at =
                     before.obstacles.partition_point(|bond| (bond.atom, bond.obstacle) < (near.atom, near.obstacle));
