@@ -20,7 +20,7 @@ pub(super) const SHARE: f64 = 0.5;
 
 /// How thick a surface with two outsides is on each side, over the proximity. What rests on it stays farther off than sweeps leave
 /// unresolved, so that its side and, over ridges and in grooves, its normals are told by more than noise.
-const SKIN: f64 = 0.05;
+const SKIN: f64 = 0.1;
 
 /// Contacts whose rows a thread writes at once.
 const CONTACTS_PER_JOB: usize = 512;

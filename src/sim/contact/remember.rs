@@ -23,7 +23,7 @@ pub fn find_at(
 }
 
 /// How far behind a ridge or a corner of a surface an atom counts as having come through it and not around it, over the proximity.
-const PASSED: f64 = 0.1;
+const PASSED: f64 = 0.2;
 
 /// Leaves atoms on the side where they were of surfaces that have two outsides. Sweeps leave an atom at a distance that is zero but
 /// for what they do not resolve; by its position alone it would then be on the other side, and would go on there.
