@@ -175,7 +175,7 @@ fn a_sheet_pressed_onto_another_stays_on_its_side() {
         let rows = run(&model, &mut state, |state, _| lowest(state));
         let worst = rows.iter().map(|(_, lowest)| *lowest).fold(f64::INFINITY, f64::min);
         println!("{parts} parts: {} steps, lowest {worst:.2e} um", rows.len());
-        // They rest on the skin of each other, of a tenth of the proximity: far more than sweeps leave.
+        // They rest on the skin of each other, of a twentieth of the prediction: far more than sweeps leave.
         assert!(worst > 0.0, "{parts} parts: {worst} um below");
     }
 }

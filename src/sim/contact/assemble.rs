@@ -18,9 +18,9 @@ use crate::sim::controls::Controls;
 /// Both sides of an interface have atoms that touch the other: each carries half of its strength.
 pub(super) const SHARE: f64 = 0.5;
 
-/// How thick a surface with two outsides is on each side, over the proximity. What rests on it stays farther off than sweeps leave
+/// How thick a surface with two outsides is on each side, over the prediction. What rests on it stays farther off than sweeps leave
 /// unresolved, so that its side and, over ridges and in grooves, its normals are told by more than noise.
-const SKIN: f64 = 0.1;
+const SKIN: f64 = 0.05;
 
 /// Contacts whose rows a thread writes at once.
 const CONTACTS_PER_JOB: usize = 512;
@@ -93,7 +93,7 @@ impl Written<'_> {
     fn atoms(&self, numbers: Range<usize>, put: &impl Fn(usize, Known)) {
         let &Self { model, found, before, controls, facing, .. } = self;
         let scene = &model.scene;
-        let skin = SKIN * scene.reach.proximity;
+        let skin = SKIN * scene.reach.prediction;
         let begin = found.atoms[numbers.start].atom;
         let mut body = scene.body_of_atom(begin) as usize;
         let mut first = before.atoms.partition_point(|bond| bond.atom < begin);
@@ -149,7 +149,7 @@ impl Written<'_> {
     fn edges(&self, numbers: Range<usize>, put: &impl Fn(usize, Known)) {
         let &Self { model, found, before, inherited, .. } = self;
         let scene = &model.scene;
-        let skin = SKIN * scene.reach.proximity;
+        let skin = SKIN * scene.reach.prediction;
         let begin = found.edges[numbers.start].edges;
         let mut first = before.edges.partition_point(|bond| bond.edges < begin);
         for number in numbers {

@@ -22,8 +22,8 @@ pub fn find_at(
     add_walls_of_grooves(&contact.scene, positions, contact.scene.safe_travel(), found);
 }
 
-/// How far behind a ridge or a corner of a surface an atom counts as having come through it and not around it, over the proximity.
-const PASSED: f64 = 0.2;
+/// How far behind a ridge or a corner of a surface an atom counts as having come through it and not around it, over the prediction.
+const PASSED: f64 = 0.1;
 
 /// Leaves atoms on the side where they were of surfaces that have two outsides. Sweeps leave an atom at a distance that is zero but
 /// for what they do not resolve; by its position alone it would then be on the other side, and would go on there.
@@ -39,7 +39,7 @@ fn keep_sides(contact: &ContactScene, before: &ContactState, found: &mut Contact
             here.iter().any(|atom| there.contains(atom))
         };
         let was = same_atom.min_by_key(|bond| (bond.facet != near.facet, !beside(bond.facet)));
-        let is_close = near.gap <= PASSED * contact.scene.reach.proximity;
+        let is_close = near.gap <= PASSED * contact.scene.reach.prediction;
         let passed = |bond: &AtomBond| match bond.facet == near.facet && near.feature == Feature::Face {
             true => bond.facing.is_opposite(near.facing),
             false => bond.facing.is_opposite(near.facing) && is_close && beside(bond.facet),
