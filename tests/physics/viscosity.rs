@@ -333,7 +333,7 @@ fn touching(integrator: &str) -> Simulation {
 /// atoms nowhere.
 #[test]
 fn viscous_cells_that_stick_go_as_in_fine_steps() {
-    let [default, fine] = ["max_step = \"0.1 s\"", "max_step = \"0.1 s\", tolerance = 5e-4"].map(|integrator| {
+    let [default, fine] = ["max_step = \"0.1 s\"", "max_step = \"0.1 s\", tolerance = 1e-4"].map(|integrator| {
         let mut simulation = touching(integrator);
         let series = |simulation: &Simulation, name: &str| simulation.series(name).unwrap();
         let middle = |simulation: &Simulation| {
@@ -356,8 +356,9 @@ fn viscous_cells_that_stick_go_as_in_fine_steps() {
     });
     // Drawn out by more than a micrometre, a part of that after the load has stopped to rise, and nearer to each other than two balls.
     assert!(fine[0] > 11.0 && fine[1] > fine[0] + 0.2 && fine[2] < 10.0, "{fine:?}");
-    // They come nearer by two micrometres; the default tolerance lets that be off by a few per cent.
-    for (default, fine) in default.iter().zip(&fine) {
-        assert!((default - fine).abs() < 0.06, "{default} {fine}");
+    // They come nearer by two micrometres, as one part of the surfaces after the other comes within the range, which converges slowly: 7.95, 8.04,
+    // 8.06 and 8.13 µm in 70, 123, 296 and 774 steps. So the default is off by up to a tenth of that; what each does by itself is not.
+    for ((default, fine), most) in default.iter().zip(&fine).zip([0.06, 0.06, 0.2]) {
+        assert!((default - fine).abs() < most, "{default} {fine}");
     }
 }
