@@ -37,17 +37,37 @@ pub(super) enum Access {
     Append,
 }
 
+/// How long a file is waited for that another program has locked, ms, one time after the other.
+const PATIENCE: [u64; 5] = [5, 10, 20, 40, 80];
+
+/// Opens a file that HDF5 can read. One that is locked is tried again for an instant: a program that this process starts beside holds, until it
+/// is its own, what this process had open to write just then.
+fn open_unlocked(path: &Path, access: Access) -> hdf5::Result<File> {
+    let opened = || match access {
+        Access::Read => FileBuilder::new().open(path),
+        Access::Append => for_writing().open_rw(path),
+    };
+    for wait in PATIENCE {
+        match opened() {
+            Err(error) if whole_text(&error).contains(LOCKED) => {
+                std::thread::sleep(std::time::Duration::from_millis(wait));
+            }
+            done => return done,
+        }
+    }
+    opened()
+}
+
+/// What HDF5 says of a file that another program has locked.
+const LOCKED: &str = "unable to lock file";
+
 /// Opens a result file of ours.
 ///
 /// # Errors
 /// A missing file, one that is not HDF5, not ours, cut short, or still being written.
 pub(super) fn open(path: &Path, access: Access) -> Result<File> {
     check_signature(path)?;
-    let opened = match access {
-        Access::Read => FileBuilder::new().open(path),
-        Access::Append => for_writing().open_rw(path),
-    };
-    let file = opened.map_err(|error| refused(path, access, &error))?;
+    let file = open_unlocked(path, access).map_err(|error| refused(path, access, &error))?;
     let format = file.attr(FORMAT_ATTRIBUTE).and_then(|attribute| attribute.read_scalar::<i64>());
     match format {
         // What is opened for writing is a copy of a file that was looked over.
@@ -111,7 +131,7 @@ pub(super) fn check_signature(path: &Path) -> Result<()> {
 /// Why HDF5 would not open a file that begins like one.
 fn refused(path: &Path, access: Access, error: &hdf5::Error) -> Error {
     let (name, text) = (path.display(), whole_text(error));
-    if text.contains("unable to lock file") || text.contains("already open") {
+    if text.contains(LOCKED) || text.contains("already open") {
         let help = "close it there first; pseudopod itself never keeps a result open for writing";
         return Error::input(Fault::new(format!("{name} is open for writing in another program")).help(help));
     }
@@ -178,6 +198,32 @@ pub(super) fn set_number<T: H5Type>(on: &Location, name: &str, value: T) -> hdf5
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Locks a file for so long, while it is opened; nothing where that works.
+    fn refused_while_locked(held: std::time::Duration) -> Option<String> {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("r.h5");
+        let file = create(&path).unwrap();
+        file.new_attr::<i64>().create(FORMAT_ATTRIBUTE).unwrap().write_scalar(&FORMAT).unwrap();
+        drop(file);
+        let locked = std::fs::File::open(&path).unwrap();
+        locked.lock().unwrap();
+        let free = std::thread::spawn(move || {
+            std::thread::sleep(held);
+            drop(locked);
+        });
+        let found = open(&path, Access::Read).err().map(|error| error.to_string());
+        free.join().unwrap();
+        found
+    }
+
+    #[test]
+    fn a_file_that_is_locked_for_an_instant_is_waited_for_and_another_is_refused() {
+        let instant = refused_while_locked(std::time::Duration::from_millis(20));
+        assert!(instant.is_none(), "{instant:?}");
+        let long = refused_while_locked(std::time::Duration::from_secs(2));
+        assert!(long.as_ref().is_some_and(|text| text.contains("is open for writing in another program")), "{long:?}");
+    }
 
     #[test]
     fn a_full_disk_is_named_as_such() {
