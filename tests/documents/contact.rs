@@ -122,22 +122,26 @@ fn an_empty_table_turns_contacts_on_and_nothing_sticks() {
 }
 
 #[test]
-fn what_only_pushes_has_twice_the_proximity_of_what_sticks_or_rubs() {
-    let proximity = |contact: &str| {
+fn a_step_looks_ahead_for_a_fifth_of_an_edge_and_for_what_touches_at_least() {
+    let of = |contact: &str| {
         let Compiled { model, .. } = compiled(&format!("[contact]\n{contact}\n"));
         let smallest = model.kinds.iter().map(|kind| kind.edge).fold(f64::INFINITY, f64::min);
-        model.contact.expect("contacts").reach.proximity / smallest
+        let reach = model.contact.expect("contacts").reach;
+        [reach.proximity, reach.prediction, reach.depth].map(|length| length / smallest)
     };
-    let pair = "[[contact.between]]\ntypes = [\"red\", \"white\"]\n";
-    for pushes in ["", "strength = \"0 Pa\""] {
-        assert!((proximity(pushes) - 0.2).abs() < 1e-12, "{pushes}");
+    let near = |found: [f64; 3], expected: [f64; 3]| {
+        assert!(found.iter().zip(expected).all(|(found, expected)| (found - expected).abs() < 1e-9), "{found:?}");
+    };
+    for law in ["", "strength = \"10 Pa\"", "model = \"adhesives\"", "model = \"links\""] {
+        near(of(law), [0.1, 0.2, 0.2]);
     }
-    let alone = ["strength = \"10 Pa\"", "energy = \"20 pN/um\"", "strength = \"0 Pa\"\nshear_strength = \"1 Pa\""];
-    let of_pair = alone.map(|key| format!("strength = \"0 Pa\"\n{pair}{key}"));
-    let other_laws = ["adhesives", "links"].map(|model| format!("model = \"{model}\""));
-    for holds in alone.map(String::from).into_iter().chain(of_pair).chain(other_laws) {
-        assert!((proximity(&holds) - 0.1).abs() < 1e-12, "{holds}");
-    }
+    let edge = 1.0 / of("proximity = \"1 um\"")[0];
+    let named = |key: &str, share: f64| format!("{key} = \"{} um\"\n", share * edge);
+    near(of(&named("proximity", 0.05)), [0.05, 0.2, 0.2]);
+    near(of(&named("proximity", 0.3)), [0.3, 0.3, 0.3]);
+    near(of(&named("prediction", 0.4)), [0.1, 0.4, 0.4]);
+    near(of(&named("prediction", 0.05)), [0.05, 0.05, 0.05]);
+    near(of(&(named("proximity", 0.2) + &named("prediction", 0.3))), [0.2, 0.3, 0.3]);
 }
 
 #[test]
