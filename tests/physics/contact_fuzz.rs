@@ -14,7 +14,7 @@ use pseudopod::geometry::{atom_areas, bounding_box};
 use pseudopod::mechanics::Force;
 use pseudopod::mechanics::attraction::Attraction;
 use pseudopod::mechanics::integrator::StepSize;
-use pseudopod::sim::contact::{Pairing, check_passed, find_contacts};
+use pseudopod::sim::contact::{AtomBond, Pairing, check_passed, find_contacts};
 use pseudopod::sim::observe::{CellMeasure, measure_cells};
 use pseudopod::sim::{Model, State, Trouble, VolumeRule, Workspace, step};
 
@@ -254,12 +254,21 @@ fn check_strength(scene: &Scene, model: &Model, state: &State, ws: &Workspace, s
         let body = body_of(atom);
         areas[kind_of(body)][(atom - bodies[body].first_atom) as usize]
     };
-    let of_atoms = bonds.atoms.iter().map(|bond| {
+    // What is farther off than the proximity is kept apart and bears nothing. Gaps to sheets count from their skin.
+    let touches = |number: usize, body: usize| {
+        let skin = if on.shape(body as u32).sides == Sides::Both { 0.05 * on.reach.prediction } else { 0.0 };
+        on.reach.touches(s.rows[number].gap() + skin)
+    };
+    let of_atoms = bonds.atoms.iter().enumerate().map(|(number, bond)| {
         let (own, other) = (body_of(bond.atom), bond.body(on) as usize);
-        let strength = if own == other { [0.0; 2] } else { scene.between[kind_of(own)][kind_of(other)] };
-        let shared_by =
-            bonds.atoms.iter().filter(|other| (other.atom, other.body(on)) == (bond.atom, bond.body(on))).count();
-        (strength, 0.5 * area_of(bond.atom) / shared_by as f64)
+        if own == other || !touches(number, other) {
+            return ([0.0; 2], 0.0);
+        }
+        let same = |(at, one): &(usize, &AtomBond)| {
+            (one.atom, one.body(on)) == (bond.atom, bond.body(on)) && touches(*at, other)
+        };
+        let shared_by = bonds.atoms.iter().enumerate().filter(same).count();
+        (scene.between[kind_of(own)][kind_of(other)], 0.5 * area_of(bond.atom) / shared_by as f64)
     });
     // Of edges only those are kept that carry a force.
     let edges = s.rows.iter().filter(|row| row.pairing == Pairing::Edges).count();
