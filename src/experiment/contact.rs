@@ -89,8 +89,8 @@ pub struct Contact {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-exclusive-minimum" = 0))]
     pub proximity: Option<Length>,
-    /// Gap below which a step keeps surfaces apart that might meet in it: cells go half of it past each other in a step. It changes steps, not
-    /// what touches. A fifth of the smallest mean edge when absent, or `proximity` where that is more.
+    /// Gap below which a step keeps surfaces apart that might meet in it: cells that are near each other move past each other by no more than
+    /// that in a step. It changes steps, not what touches. A fifth of the smallest mean edge when absent, or `proximity` where that is more.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-exclusive-minimum" = 0))]
     pub prediction: Option<Length>,

@@ -219,7 +219,7 @@ mod tests {
 
     #[test]
     fn a_file_that_is_locked_for_an_instant_is_waited_for_and_another_is_refused() {
-        let instant = refused_while_locked(std::time::Duration::from_millis(20));
+        let instant = refused_while_locked(std::time::Duration::from_millis(5));
         assert!(instant.is_none(), "{instant:?}");
         let long = refused_while_locked(std::time::Duration::from_secs(2));
         assert!(long.as_ref().is_some_and(|text| text.contains("is open for writing in another program")), "{long:?}");

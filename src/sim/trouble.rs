@@ -153,7 +153,10 @@ impl Trouble {
                 "a cell lies on a tool by its atoms and edges: make its mesh finer than the tool is thin also where it is stretched, \
                  or load it less"
             }
-            Self::TooFast { .. } => "shorten run.integrator.step, or leave it out so that steps limit themselves",
+            Self::TooFast { .. } => {
+                "shorten run.integrator.step, or leave it out so that steps limit themselves; between cells, a larger \
+                 contact.prediction lets them go farther in a step"
+            }
             Self::StepTooSmall { .. } => {
                 "the cell changes shape faster than any step can follow: look at its last state for folded or \
                  collapsed facets, lower the load, or raise run.integrator.tolerance"

@@ -273,7 +273,11 @@ fn check_strength(scene: &Scene, model: &Model, state: &State, ws: &Workspace, s
     // Of edges only those are kept that carry a force.
     let edges = s.rows.iter().filter(|row| row.pairing == Pairing::Edges).count();
     let of_edges = std::iter::repeat_n(([0.0; 2], 0.0), edges);
-    let of_planes = bonds.obstacles.iter().map(|bond| {
+    let before_planes = bonds.atoms.len() + edges;
+    let of_planes = bonds.obstacles.iter().enumerate().map(|(number, bond)| {
+        if !on.reach.touches(s.rows[before_planes + number].gap()) {
+            return ([0.0; 2], 0.0);
+        }
         let kind = kind_of(body_of(bond.atom));
         (scene.on_planes[kind][bond.obstacle as usize], area_of(bond.atom))
     });
