@@ -7,6 +7,7 @@ use crate::units::{self, Dimension, UnitError};
 use crate::values::{Colour, LengthUnit};
 use indexmap::IndexMap;
 use serde_json::{Map, Value as Json};
+use std::borrow::Cow;
 
 mod bounds;
 mod keys;
@@ -63,17 +64,26 @@ impl Keys {
     }
 }
 
-impl Walk<'_> {
+impl<'a> Walk<'a> {
     /// Follows `$ref`; what stands beside it comes first.
-    fn resolve(&self, schema: &Json) -> Map<String, Json> {
+    fn resolve<'s>(&self, schema: &'s Json) -> Cow<'s, Map<String, Json>>
+    where
+        'a: 's,
+    {
+        if let Some(own) = schema.as_object().filter(|own| !own.contains_key("$ref")) {
+            return Cow::Borrowed(own);
+        }
+        let definition =
+            |reference: &str| self.definitions[reference.rsplit('/').next().unwrap_or_default()].as_object();
         let mut own = schema.as_object().cloned().unwrap_or_default();
         while let Some(Json::String(reference)) = own.remove("$ref") {
-            let name = reference.rsplit('/').next().unwrap_or_default();
-            for (key, value) in self.definitions[name].as_object().cloned().unwrap_or_default() {
-                own.entry(key).or_insert(value);
+            for (key, value) in definition(&reference).into_iter().flatten() {
+                if !own.contains_key(key) {
+                    own.insert(key.clone(), value.clone());
+                }
             }
         }
-        own
+        Cow::Owned(own)
     }
 
     fn node(&mut self, node: &Node, schema: &Json, path: &str) {
@@ -85,11 +95,11 @@ impl Walk<'_> {
             return self.quantity(node, &schema, dimension, path);
         }
         let is_table = schema.get("type").is_some_and(|kind| kind == "object") || schema.contains_key("properties");
-        let alternatives = schema.get("anyOf").or(schema.get("oneOf")).and_then(Json::as_array).cloned();
+        let alternatives = schema.get("anyOf").or(schema.get("oneOf")).and_then(Json::as_array);
         if let Some(alternatives) = alternatives.filter(|_| !is_table) {
             let all_tables = alternatives.iter().all(|one| kinds_of(&self.resolve(one)) == ["object"]);
             if !all_tables {
-                return self.alternatives(node, &schema, &alternatives, path);
+                return self.alternatives(node, &schema, alternatives, path);
             }
         } else if !is_table {
             return self.scalar_or_list(node, &schema, path);

@@ -1,9 +1,10 @@
 //! Reads documents and checks them as a whole.
 
 use super::document::{Document, near_file};
+use super::schema::schema_of_experiments;
 use super::semantics::Files;
 use super::tree::{Node, Value};
-use super::{Experiment, check, schema, semantics};
+use super::{Experiment, check, semantics};
 use crate::error::{Error, Fault, Location, Result, Source};
 use crate::units::Time;
 use serde::Deserialize;
@@ -86,7 +87,7 @@ impl Document {
         if let Some(fault) = not_an_experiment(&tree) {
             return Err(Error::input(fault));
         }
-        let found = check::check(&tree, &schema());
+        let found = check::check(&tree, schema_of_experiments());
         faults.extend(found.faults);
         if faults.is_empty() {
             let experiment = experiment_of(&tree)?;

@@ -5,6 +5,7 @@ use schemars::generate::SchemaSettings;
 use schemars::transform::{Transform, transform_subschemas};
 use schemars::{JsonSchema, Schema};
 use serde_json::Value;
+use std::sync::OnceLock;
 
 /// The JSON schema (draft 2020-12) of the experiment document.
 ///
@@ -13,6 +14,12 @@ use serde_json::Value;
 /// `x-words` (words that stand beside the quantity), `x-text` (what else a text is: a file, a name, a colour).
 pub fn schema() -> Value {
     schema_of::<Experiment>()
+}
+
+/// The same, made once.
+pub(super) fn schema_of_experiments() -> &'static Value {
+    static SCHEMA: OnceLock<Value> = OnceLock::new();
+    SCHEMA.get_or_init(schema)
 }
 
 /// The same of another kind of document.

@@ -93,7 +93,7 @@ pub fn run(document: &Document, options: &RunOptions, report: &mut dyn Report) -
     };
     let writer = ResultWriter::create(result, &header, &layout_of(simulation.model()), *overwrite)?;
     simulation.notices().iter().for_each(|notice| report.notice(notice));
-    drive(ready, writer, result, report, Start::Fresh).map_err(|error| can_go_on(error, result))
+    drive(ready, (document, writer), result, report, Start::Fresh).map_err(|error| can_go_on(error, result))
 }
 
 /// What the run of a result did, if it came to its end; then there is nothing to resume.
@@ -128,7 +128,7 @@ pub fn resume(result: &Path, options: &ResumeOptions, report: &mut dyn Report) -
     ready.simulation.restore(&checkpoint.payload).map_err(|error| cannot_restore(&error, result))?;
     let layout = layout_of(ready.simulation.model());
     let writer = ResultWriter::reopen(result, &header, &layout, (&checkpoint.meta).into())?;
-    drive(ready, writer, result, report, Start::Resumed).map_err(|error| can_go_on(error, result))
+    drive(ready, (&document, writer), result, report, Start::Resumed).map_err(|error| can_go_on(error, result))
 }
 
 /// Goes on with a run that was killed before its first checkpoint, from its start, which is all that it has recorded.
@@ -142,9 +142,10 @@ fn begin_again(builder: &Builder, result: &Path, options: &ResumeOptions, report
     }
     let header = file.header().clone();
     drop(file);
-    let ready = builder.ready_told(&document_within(&header, result, options)?, &|_| ())?;
+    let document = document_within(&header, result, options)?;
+    let ready = builder.ready_told(&document, &|_| ())?;
     let writer = ResultWriter::reopen(result, &header, &layout_of(ready.simulation.model()), Kept::until(0))?;
-    drive(ready, writer, result, report, Start::Recorded).map_err(|error| can_go_on(error, result))
+    drive(ready, (&document, writer), result, report, Start::Recorded).map_err(|error| can_go_on(error, result))
 }
 
 /// The document of a result, which may take as much memory as the options say.
@@ -208,7 +209,13 @@ enum Start {
 }
 
 /// Lets a simulation go to the end of its experiment, recorded.
-fn drive(ready: Ready, writer: ResultWriter, result: &Path, report: &mut dyn Report, start: Start) -> Result<Outcome> {
+fn drive(
+    ready: Ready,
+    (document, writer): (&Document, ResultWriter),
+    result: &Path,
+    report: &mut dyn Report,
+    start: Start,
+) -> Result<Outcome> {
     let Ready { mut simulation, schedule, pushed } = ready;
     simulation.within(|simulation| {
         let (began, first, until) = (Instant::now(), simulation.steps(), simulation.end());
@@ -246,16 +253,15 @@ fn drive(ready: Ready, writer: ResultWriter, result: &Path, report: &mut dyn Rep
         let wall_time = began.elapsed().as_secs_f64();
         let Recording { writer, limited, report, .. } = recording;
         let (steps, frames) = (simulation.steps(), writer.frames());
-        finish(writer, result, wall_time, report)?;
+        finish(writer, document, wall_time, report)?;
         Ok(Outcome { steps, frames, made: steps - first, limited, wall_time, pushed })
     })
 }
 
 /// Evaluates the measures of the experiment on what was recorded and ends the file.
-fn finish(mut writer: ResultWriter, result: &Path, wall_time: f64, report: &mut dyn Report) -> Result<()> {
+fn finish(mut writer: ResultWriter, document: &Document, wall_time: f64, report: &mut dyn Report) -> Result<()> {
     let file = writer.read()?;
-    let document = document_of(file.header(), result)?;
-    let (measures, faults) = measure_result(&file, &document)?;
+    let (measures, faults) = measure_result(&file, document)?;
     drop(file);
     writer.write_summary(&measures);
     writer.finish(wall_time)?;

@@ -78,36 +78,30 @@ impl Gaps {
                 Body::new(atoms, layout.types[cell.kind as usize].facets.clone())
             })
             .collect();
-        let Some(empty) = find_empty(&bodies) else {
+        let found = match self.statistic {
+            GapStatistic::LargestBall => Points::inside(&bodies).map(|points| points.largest_ball(&bodies)),
+            GapStatistic::EmptyShare => Points::inside(&bodies).map(|points| points.empty_share(&bodies)),
+        };
+        found.ok_or_else(|| {
             let time = recording.times[frame];
             let cells = if bodies.len() == 1 { "one cell".to_owned() } else { format!("{} cells", bodies.len()) };
             let fault = Fault::new(format!("the largest aggregate at {time} s, of {cells}, has no inside"));
-            return Err(Error::input(
-                fault.help("give a time at which four cells or more that do not lie in a plane touch"),
-            ));
-        };
-        Ok(match self.statistic {
-            GapStatistic::LargestBall => empty.largest_ball,
-            GapStatistic::EmptyShare => empty.share,
+            Error::input(fault.help("give a time at which four cells or more that do not lie in a plane touch"))
         })
     }
 }
 
-/// A cell: its atoms and facets, and a ball around it.
+/// A cell: its atoms and facets, and balls around it and within it.
 pub(super) struct Body {
     atoms: Vec<Vec3>,
     facets: Vec<[u32; 3]>,
+    /// The middle of each facet, and how far its corners are from there.
+    balls: Vec<(Vec3, f64)>,
     centre: Vec3,
+    /// No atom is farther from the centre.
     radius: f64,
-}
-
-/// What is empty inside an aggregate.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Empty {
-    /// Radius of the largest ball that fits between the cells, µm.
-    pub largest_ball: f64,
-    /// Part of the inside that no cell fills.
-    pub share: f64,
+    /// What is nearer to the centre is inside.
+    inscribed: f64,
 }
 
 impl Body {
@@ -115,18 +109,39 @@ impl Body {
     pub(super) fn new(atoms: Vec<Vec3>, facets: Vec<[u32; 3]>) -> Self {
         let centre = atoms.iter().sum::<Vec3>() / atoms.len() as f64;
         let radius = atoms.iter().map(|atom| (atom - centre).norm()).fold(0.0, f64::max);
-        Self { atoms, facets, centre, radius }
+        let ball = |facet: &[u32; 3]| {
+            let corners = facet.map(|atom| atoms[atom as usize]);
+            let middle = corners.iter().sum::<Vec3>() / 3.0;
+            (middle, corners.iter().map(|corner| (corner - middle).norm()).fold(0.0, f64::max))
+        };
+        let balls = facets.iter().map(ball).collect();
+        let mut body = Self { atoms, facets, balls, centre, radius, inscribed: 0.0 };
+        if winding_number(centre, &body.atoms, &body.facets) > 0.5 {
+            body.inscribed = body.distance(centre, f64::INFINITY);
+        }
+        body
     }
 
     fn has_inside(&self, position: Vec3) -> bool {
-        (position - self.centre).norm() < self.radius && winding_number(position, &self.atoms, &self.facets) > 0.5
+        let distance = (position - self.centre).norm();
+        distance < self.inscribed || distance < self.radius && winding_number(position, &self.atoms, &self.facets) > 0.5
     }
 
-    fn distance(&self, position: Vec3) -> f64 {
-        let of_facet = |facet: &[u32; 3]| {
-            closest_on_facet(position, facet.map(|atom| self.atoms[atom as usize])).offset.norm_squared()
-        };
-        self.facets.iter().map(of_facet).fold(f64::INFINITY, f64::min).sqrt()
+    /// How far the surface is from a point, µm; `most` where it is no nearer.
+    fn distance(&self, position: Vec3, mut most: f64) -> f64 {
+        for (facet, (middle, reach)) in self.facets.iter().zip(&self.balls) {
+            let near = most + reach;
+            if (position - middle).norm_squared() < near * near {
+                let corners = facet.map(|atom| self.atoms[atom as usize]);
+                most = most.min(closest_on_facet(position, corners).offset.norm());
+            }
+        }
+        most
+    }
+
+    /// No part of it is nearer to a point, µm.
+    fn at_least(&self, position: Vec3) -> f64 {
+        (position - self.centre).norm() - self.radius
     }
 
     fn volume(&self) -> f64 {
@@ -141,13 +156,13 @@ fn clearance(bodies: &[Body], position: Vec3) -> f64 {
     if bodies.iter().any(|body| body.has_inside(position)) {
         return 0.0;
     }
-    let mut nearest = f64::INFINITY;
-    for body in bodies {
-        if (position - body.centre).norm() - body.radius < nearest {
-            nearest = nearest.min(body.distance(position));
-        }
-    }
-    nearest
+    // The one that is nearest by its ball spares most of the others.
+    let by_ball = |one: &&Body, other: &&Body| one.at_least(position).total_cmp(&other.at_least(position));
+    let nearest = bodies.iter().min_by(by_ball).map_or(f64::INFINITY, |body| body.distance(position, f64::INFINITY));
+    bodies.iter().fold(nearest, |nearest, body| match body.at_least(position) < nearest {
+        true => body.distance(position, nearest),
+        false => nearest,
+    })
 }
 
 /// The inside of an aggregate, eq. (analysis.18): what no plane through a centre, with all others behind it, cuts off, in 642 directions.
@@ -181,39 +196,56 @@ impl Inside {
     }
 }
 
-/// Finds what is empty inside an aggregate; none where its centres are almost in one plane, so that nothing is inside.
-pub(super) fn find_empty(bodies: &[Body]) -> Option<Empty> {
-    let inside = Inside::of(bodies);
-    let (mut low, mut high) = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
-    for body in bodies {
-        (low, high) = (low.inf(&body.centre), high.sup(&body.centre));
+/// Points inside an aggregate, evenly.
+pub(super) struct Points {
+    inside: Inside,
+    points: Vec<Vec3>,
+    /// The distance between them, µm.
+    step: f64,
+}
+
+impl Points {
+    /// Those of an aggregate; none where its centres are almost in one plane, so that nothing is inside.
+    pub(super) fn inside(bodies: &[Body]) -> Option<Self> {
+        let inside = Inside::of(bodies);
+        let (mut low, mut high) = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
+        for body in bodies {
+            (low, high) = (low.inf(&body.centre), high.sup(&body.centre));
+        }
+        let size = high - low;
+        let volume = bodies.iter().map(Body::volume).sum::<f64>() / bodies.len() as f64;
+        let spacing = (volume.cbrt() / POINTS_PER_SIDE).max((size.x * size.y * size.z / MOST_POINTS).cbrt());
+        if inside.thickness(bodies) < spacing {
+            return None;
+        }
+        // In the middles of boxes that fill the extent, so that none lies on its rim.
+        let counts = size.map(|side| (side / spacing).ceil().max(1.0));
+        let step = size.component_div(&counts);
+        let [nx, ny, nz] = [counts.x, counts.y, counts.z].map(|count| count as usize);
+        let points: Vec<Vec3> = (0..nx * ny * nz)
+            .into_par_iter()
+            .map(|number| [number / ny / nz, number / nz % ny, number % nz].map(|index| index as f64 + 0.5))
+            .map(|index| low + Vec3::from(index).component_mul(&step))
+            .filter(|position| inside.holds(position))
+            .collect();
+        (!points.is_empty()).then_some(Self { inside, points, step: step.max() })
     }
-    let size = high - low;
-    let volume = bodies.iter().map(Body::volume).sum::<f64>() / bodies.len() as f64;
-    let spacing = (volume.cbrt() / POINTS_PER_SIDE).max((size.x * size.y * size.z / MOST_POINTS).cbrt());
-    if inside.thickness(bodies) < spacing {
-        return None;
+
+    /// The part that no cell fills.
+    pub(super) fn empty_share(&self, bodies: &[Body]) -> f64 {
+        let is_empty = |position: &&Vec3| !bodies.iter().any(|body| body.has_inside(**position));
+        self.points.par_iter().filter(is_empty).count() as f64 / self.points.len() as f64
     }
-    // In the middles of boxes that fill the extent, so that none lies on its rim.
-    let counts = size.map(|side| (side / spacing).ceil().max(1.0));
-    let step = size.component_div(&counts);
-    let [nx, ny, nz] = [counts.x, counts.y, counts.z].map(|count| count as usize);
-    let clearances: Vec<(f64, Vec3)> = (0..nx * ny * nz)
-        .into_par_iter()
-        .map(|number| [number / ny / nz, number / nz % ny, number % nz].map(|index| index as f64 + 0.5))
-        .map(|index| low + Vec3::from(index).component_mul(&step))
-        .filter(|position| inside.holds(position))
-        .map(|position| (clearance(bodies, position), position))
-        .collect();
-    if clearances.is_empty() {
-        return None;
+
+    /// The radius of the largest ball that fits between the cells, µm.
+    pub(super) fn largest_ball(&self, bodies: &[Body]) -> f64 {
+        let clearances = self.points.par_iter().map(|position| (clearance(bodies, *position), *position));
+        let mut starts: Vec<(f64, Vec3)> = clearances.collect();
+        starts.sort_by(|one, other| other.0.total_cmp(&one.0));
+        starts.truncate(STARTS);
+        let largest = starts.into_par_iter().map(|start| climb(bodies, &self.inside, start, self.step));
+        largest.reduce(|| 0.0, f64::max)
     }
-    let share = clearances.iter().filter(|(clearance, _)| *clearance > 0.0).count() as f64 / clearances.len() as f64;
-    let mut starts = clearances;
-    starts.sort_by(|one, other| other.0.total_cmp(&one.0));
-    starts.truncate(STARTS);
-    let largest = starts.into_par_iter().map(|start| climb(bodies, &inside, start, step.max()));
-    Some(Empty { largest_ball: largest.reduce(|| 0.0, f64::max), share })
 }
 
 /// The most clearance near a point: the best of the points around it, ever closer. Clearance has ridges, where it rises along few directions, so
