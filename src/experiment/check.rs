@@ -9,8 +9,11 @@ use indexmap::IndexMap;
 use serde_json::{Map, Value as Json};
 use std::borrow::Cow;
 
+mod asked;
 mod bounds;
 mod keys;
+
+use asked::{dimension_of, expectation, inherit, json_kind, kinds_of, rewrite, with_purpose, words_of};
 
 /// A text that means something elsewhere: a file, a series, the name of a cell type.
 #[derive(Debug, Clone, PartialEq)]
@@ -260,42 +263,6 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// How a value of the wrong kind is written right, if that can be told from the value.
-fn rewrite(node: &Node, wanted: &str) -> Option<String> {
-    let written = node.written();
-    match (&node.value, wanted) {
-        (Value::Text(text), "a number" | "a whole number") if text.trim().parse::<f64>().is_ok() => {
-            Some(format!("write the number without quotes: {}", text.trim()))
-        }
-        (Value::Text(text), "true or false") if text == "true" || text == "false" => {
-            Some(format!("write it without quotes: {text}"))
-        }
-        (Value::Integer(_) | Value::Truth(_) | Value::Number(_), "a text") => {
-            Some(format!("write it in quotes: \"{written}\""))
-        }
-        (Value::Number(number), "a whole number") if number.fract() == 0.0 => {
-            Some(format!("write it without a decimal point: {number}"))
-        }
-        (Value::Table(_), "a list") if written.starts_with('[') => {
-            let name = written.trim_matches(['[', ']']);
-            Some(format!("begin every entry with two brackets: [[{name}]]"))
-        }
-        (Value::Integer(_) | Value::Text(_) | Value::Number(_), "a list") if !written.contains('\n') => {
-            Some(format!("write a list, in brackets: [{written}]"))
-        }
-        _ => None,
-    }
-}
-
-/// Adds what a key is for, in the words of its type.
-fn with_purpose(fault: Fault, schema: &Map<String, Json>) -> Fault {
-    match schema.get("description").and_then(Json::as_str) {
-        // Where the lines of the schema's text end means nothing in a message.
-        Some(purpose) => fault.help(format!("the key is for: {}", purpose.replace('\n', " "))),
-        None => fault.help("write another value; `pseudopod schema` tells what is allowed"),
-    }
-}
-
 /// Why a text cannot name something that becomes part of a file or of the result.
 pub(super) fn name_error(text: &str) -> Option<UnitError> {
     let good = text.starts_with(|c: char| c.is_ascii_alphabetic())
@@ -303,72 +270,4 @@ pub(super) fn name_error(text: &str) -> Option<UnitError> {
     let message = format!("\"{text}\" cannot be a name");
     let help = "a name begins with a letter and has letters, digits, _ and - only".to_owned();
     (!good).then_some(UnitError { message, help, at: 0..text.len() })
-}
-
-/// The dimension of a schema that asks for a quantity.
-fn dimension_of(schema: &Map<String, Json>) -> Option<Dimension> {
-    schema.get("x-dimension").and_then(Json::as_str).and_then(Dimension::by_name)
-}
-
-/// The words that a schema allows, if it asks for one of a few.
-fn words_of(schema: &Map<String, Json>) -> Option<Vec<String>> {
-    let word = |one: &Json| one.as_str().map(str::to_owned);
-    if let Some(words) = schema.get("enum").and_then(Json::as_array) {
-        return words.iter().map(word).collect();
-    }
-    if let Some(only) = schema.get("const") {
-        return word(only).map(|only| vec![only]);
-    }
-    let words = schema.get("oneOf").and_then(Json::as_array)?.iter();
-    words.map(|one| one.get("const").and_then(word)).collect()
-}
-
-/// What `type` allows.
-fn kinds_of(schema: &Map<String, Json>) -> Vec<String> {
-    match schema.get("type") {
-        Some(Json::String(kind)) => vec![kind.clone()],
-        Some(Json::Array(kinds)) => kinds.iter().filter_map(Json::as_str).map(str::to_owned).collect(),
-        _ => Vec::new(),
-    }
-}
-
-/// The kind of a value in the words of JSON Schema.
-fn json_kind(node: &Node) -> &'static str {
-    match node.value {
-        Value::Table(_) => "object",
-        Value::List(_) => "array",
-        Value::Text(_) | Value::Date(_) => "string",
-        Value::Integer(_) => "integer",
-        Value::Number(_) => "number",
-        Value::Truth(_) => "boolean",
-    }
-}
-
-/// What a schema asks for, in words: "a length", "a list of 3".
-fn expectation(schema: &Map<String, Json>) -> String {
-    if let Some(dimension) = dimension_of(schema) {
-        return dimension.with_article();
-    }
-    let kind = kinds_of(schema).into_iter().next().unwrap_or_default();
-    let name = match kind.as_str() {
-        "object" => "a table",
-        "array" => "a list",
-        "integer" => "a whole number",
-        "number" => "a number",
-        "boolean" => "true or false",
-        _ => "a text",
-    };
-    name.to_owned()
-}
-
-/// Bounds and meaning of a key hold for the entries of its list and for its alternatives.
-fn inherit(parent: &Map<String, Json>, child: &Map<String, Json>) -> Map<String, Json> {
-    let mut child = child.clone();
-    for (key, value) in parent {
-        let bound_or_meaning = key.starts_with("x-") && key != "x-dimension" && key != "x-words";
-        if bound_or_meaning || key == "description" {
-            child.entry(key.clone()).or_insert(value.clone());
-        }
-    }
-    child
 }

@@ -333,6 +333,12 @@ fn the_more_cohesive_cells_come_to_be_inside() {
 }
 
 #[test]
+#[ignore = "slow: some four minutes"]
+fn two_hundred_cells_sort() {
+    experiment_keeps_its_word("sorting", "two_hundred.toml");
+}
+
+#[test]
 #[ignore = "slow: two minutes together"]
 fn cells_that_stick_to_the_other_type_mix_and_those_that_stick_to_their_own_part() {
     experiment_keeps_its_word("sorting", "mixture.toml");

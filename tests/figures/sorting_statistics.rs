@@ -10,19 +10,23 @@ const SEEDS: std::ops::RangeInclusive<u32> = 1..=20;
 
 /// Index and p value at the end of one run.
 fn segregation(seed: u32, sets: &[&str]) -> [f64; 2] {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments/sorting/experiment.toml");
-    let seed_set = format!("seed={seed}");
     // Only the end counts here.
-    let sets: Vec<String> =
-        sets.iter().copied().chain([seed_set.as_str(), "output.every=60 s"]).map(str::to_owned).collect();
+    let sets: Vec<&str> = sets.iter().copied().chain(["output.every=60 s"]).collect();
+    measured("experiment.toml", seed, &sets, ["segregation", "p_value"])
+}
+
+/// Two measures of one run of a document.
+fn measured(document: &str, seed: u32, sets: &[&str], names: [&str; 2]) -> [f64; 2] {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments/sorting").join(document);
+    let seed_set = format!("seed={seed}");
+    let sets: Vec<String> = sets.iter().copied().chain([seed_set.as_str()]).map(str::to_owned).collect();
     let document = Document::read(&path, &sets).expect("a good document");
     let scratch = tempfile::tempdir().expect("a folder");
     let result = scratch.path().join("result.h5");
     let options = RunOptions::new(&result);
     run(&document, &options, &mut Quiet).expect("a run");
     let measures = ResultFile::open(&result).expect("a result").summary().expect("measures");
-    let value = |name: &str| measures.iter().find(|measure| measure.name == name).expect("a measure").value;
-    [value("segregation"), value("p_value")]
+    names.map(|name| measures.iter().find(|measure| measure.name == name).expect("a measure").value)
 }
 
 /// The probability that the product of as many independent p values is as small by chance (Fisher 1925): −2 Σ ln p is
