@@ -25,7 +25,7 @@ fn experiment_keeps_its_word(folder: &str, document: &str) {
 }
 
 /// Pictures that a README shows as what a command makes: the document, the file beside its result, the picture in docs/pictures.
-const SHOWN: [(&str, &str, &str); 42] = [
+const SHOWN: [(&str, &str, &str); 43] = [
     ("aggregation/experiment.toml", "result.png", "aggregation.png"),
     ("aspiration/experiment.toml", "result.png", "aspiration.png"),
     ("bending_volume/linear.toml", "result.png", "bending_volume.png"),
@@ -57,6 +57,7 @@ const SHOWN: [(&str, &str, &str); 42] = [
     ("rolling_ball/experiment.toml", "result.png", "rolling_ball.png"),
     ("sorting/experiment.toml", "result.png", "sorting.png"),
     ("sorting/experiment.toml", "result.segregation.png", "sorting_segregation.png"),
+    ("sorting/two_hundred.toml", "result.png", "sorting_two_hundred.png"),
     ("sphere_under_gravity/experiment.toml", "result.png", "spheres.png"),
     ("spreading/experiment.toml", "result.png", "spreading.png"),
     ("spreading/experiment.toml", "result.area.png", "spreading_area.png"),
