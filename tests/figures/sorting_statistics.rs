@@ -75,3 +75,16 @@ fn types_that_stick_alike_are_mixed_at_random() {
     // Types are exchangeable here, so that one in twenty sets of seeds would be below by chance.
     assert!(p > 0.05);
 }
+
+#[test]
+#[ignore = "slow: ten runs of some four minutes each"]
+fn two_hundred_cells_sort_over_ten_seeds() {
+    let found: Vec<[f64; 2]> =
+        (1..=10).map(|seed| measured("two_hundred.toml", seed, &[], ["order_start", "order_3000"])).collect();
+    for (seed, [start, end]) in (1..).zip(&found) {
+        println!("seed {seed}: order {start:.3} at 100 s, {end:.3} at 3 000 s");
+    }
+    let mean = found.iter().map(|[_, end]| end).sum::<f64>() / found.len() as f64;
+    assert!(mean > 0.8, "{mean}");
+    assert!(found.iter().all(|[start, end]| *start < 0.3 && *end > 0.65), "{found:?}");
+}
