@@ -77,7 +77,7 @@ fn types_that_stick_alike_are_mixed_at_random() {
 }
 
 #[test]
-#[ignore = "slow: ten runs of some four minutes each"]
+#[ignore = "slow: ten runs of some six minutes each"]
 fn two_hundred_cells_sort_over_ten_seeds() {
     let found: Vec<[f64; 2]> =
         (1..=10).map(|seed| measured("two_hundred.toml", seed, &[], ["order_start", "order_3000"])).collect();
