@@ -93,7 +93,7 @@ pub fn run(document: &Document, options: &RunOptions, report: &mut dyn Report) -
     };
     let writer = ResultWriter::create(result, &header, &layout_of(simulation.model()), *overwrite)?;
     simulation.notices().iter().for_each(|notice| report.notice(notice));
-    drive(ready, (document, writer), result, report, Start::Fresh).map_err(|error| can_go_on(error, result))
+    drive(ready, document, writer, result, report, Start::Fresh).map_err(|error| can_go_on(error, result))
 }
 
 /// What the run of a result did, if it came to its end; then there is nothing to resume.
@@ -128,7 +128,7 @@ pub fn resume(result: &Path, options: &ResumeOptions, report: &mut dyn Report) -
     ready.simulation.restore(&checkpoint.payload).map_err(|error| cannot_restore(&error, result))?;
     let layout = layout_of(ready.simulation.model());
     let writer = ResultWriter::reopen(result, &header, &layout, (&checkpoint.meta).into())?;
-    drive(ready, (&document, writer), result, report, Start::Resumed).map_err(|error| can_go_on(error, result))
+    drive(ready, &document, writer, result, report, Start::Resumed).map_err(|error| can_go_on(error, result))
 }
 
 /// Goes on with a run that was killed before its first checkpoint, from its start, which is all that it has recorded.
@@ -145,7 +145,7 @@ fn begin_again(builder: &Builder, result: &Path, options: &ResumeOptions, report
     let document = document_within(&header, result, options)?;
     let ready = builder.ready_told(&document, &|_| ())?;
     let writer = ResultWriter::reopen(result, &header, &layout_of(ready.simulation.model()), Kept::until(0))?;
-    drive(ready, (&document, writer), result, report, Start::Recorded).map_err(|error| can_go_on(error, result))
+    drive(ready, &document, writer, result, report, Start::Recorded).map_err(|error| can_go_on(error, result))
 }
 
 /// The document of a result, which may take as much memory as the options say.
@@ -211,7 +211,8 @@ enum Start {
 /// Lets a simulation go to the end of its experiment, recorded.
 fn drive(
     ready: Ready,
-    (document, writer): (&Document, ResultWriter),
+    document: &Document,
+    writer: ResultWriter,
     result: &Path,
     report: &mut dyn Report,
     start: Start,

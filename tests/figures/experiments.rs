@@ -334,7 +334,7 @@ fn the_more_cohesive_cells_come_to_be_inside() {
 }
 
 #[test]
-#[ignore = "slow: some six minutes"]
+#[ignore = "slow: some seven minutes"]
 fn two_hundred_cells_sort() {
     experiment_keeps_its_word("sorting", "two_hundred.toml");
 }

@@ -77,7 +77,7 @@ fn types_that_stick_alike_are_mixed_at_random() {
 }
 
 #[test]
-#[ignore = "slow: ten runs of some six minutes each"]
+#[ignore = "slow: ten runs of some seven minutes each"]
 fn two_hundred_cells_sort_over_ten_seeds() {
     let found: Vec<[f64; 2]> =
         (1..=10).map(|seed| measured("two_hundred.toml", seed, &[], ["order_start", "order_3000"])).collect();
@@ -85,6 +85,7 @@ fn two_hundred_cells_sort_over_ten_seeds() {
         println!("seed {seed}: order {start:.3} at 100 s, {end:.3} at 3 000 s");
     }
     let mean = found.iter().map(|[_, end]| end).sum::<f64>() / found.len() as f64;
+    // Found were 0.86 (deviation 0.04) in the mean, 0.77 at least, and 0.26 at most at the start; runs part like seeds where steps differ.
     assert!(mean > 0.8, "{mean}");
-    assert!(found.iter().all(|[start, end]| *start < 0.3 && *end > 0.65), "{found:?}");
+    assert!(found.iter().all(|[start, end]| *start < 0.3 && *end > 0.66), "{found:?}");
 }

@@ -78,10 +78,10 @@ impl Gaps {
                 Body::new(atoms, layout.types[cell.kind as usize].facets.clone())
             })
             .collect();
-        let found = match self.statistic {
-            GapStatistic::LargestBall => Points::inside(&bodies).map(|points| points.largest_ball(&bodies)),
-            GapStatistic::EmptyShare => Points::inside(&bodies).map(|points| points.empty_share(&bodies)),
-        };
+        let found = Points::inside(&bodies).map(|points| match self.statistic {
+            GapStatistic::LargestBall => points.largest_ball(&bodies),
+            GapStatistic::EmptyShare => points.empty_share(&bodies),
+        });
         found.ok_or_else(|| {
             let time = recording.times[frame];
             let cells = if bodies.len() == 1 { "one cell".to_owned() } else { format!("{} cells", bodies.len()) };
