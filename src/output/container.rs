@@ -4,6 +4,8 @@ use std::path::Path;
 
 use hdf5::file::FileBuilder;
 use hdf5::{File, H5Type, Location};
+#[cfg(unix)]
+use hdf5_sys::{h5f::H5Fget_vfd_handle, h5p::H5P_DEFAULT};
 
 use super::vetting::vet;
 use crate::error::{Error, Fault, Result};
@@ -27,7 +29,31 @@ fn for_writing() -> FileBuilder {
 
 /// Makes a file where there is none.
 pub(super) fn create(path: &Path) -> Result<File> {
-    for_writing().create_excl(path).map_err(|error| failed(path, "could not be made", &error))
+    let file = for_writing().create_excl(path).map_err(|error| failed(path, "could not be made", &error))?;
+    let_go_of_the_lock(&file);
+    Ok(file)
+}
+
+/// Lets go of the lock that HDF5 takes on a file that is opened for writing. What is written here is nobody else's until it is whole and has
+/// its name. Programs that this process starts meanwhile inherit the open file, as HDF5 does not close it to them, and with it the lock: they would
+/// keep the result from being read until they end.
+fn let_go_of_the_lock(file: &File) {
+    #[cfg(unix)]
+    {
+        use std::os::fd::FromRawFd as _;
+        let mut handle = std::ptr::null_mut();
+        // SAFETY: the file is open, `handle` is valid for writing, and the call holds the lock of the library.
+        let found = hdf5::sync::sync(|| unsafe { H5Fget_vfd_handle(file.id(), H5P_DEFAULT, &raw mut handle) });
+        if found < 0 || handle.is_null() {
+            return;
+        }
+        // SAFETY: the driver by which files are opened here keeps a file descriptor, which stays open as long as `file`; it is not closed here.
+        let descriptor = std::mem::ManuallyDrop::new(unsafe { std::fs::File::from_raw_fd(*handle.cast()) });
+        // Where locks are unknown there was none.
+        let _ = descriptor.unlock();
+    }
+    #[cfg(not(unix))]
+    let _ = file;
 }
 
 /// What an open file is wanted for.
@@ -35,27 +61,6 @@ pub(super) fn create(path: &Path) -> Result<File> {
 pub(super) enum Access {
     Read,
     Append,
-}
-
-/// How long a file is waited for that another program has locked, ms, one time after the other.
-const PATIENCE: [u64; 5] = [5, 10, 20, 40, 80];
-
-/// Opens a file that HDF5 can read. One that is locked is tried again for an instant: a program that this process starts beside holds, until it
-/// is its own, what this process had open to write just then.
-fn open_unlocked(path: &Path, access: Access) -> hdf5::Result<File> {
-    let opened = || match access {
-        Access::Read => FileBuilder::new().open(path),
-        Access::Append => for_writing().open_rw(path),
-    };
-    for wait in PATIENCE {
-        match opened() {
-            Err(error) if whole_text(&error).contains(LOCKED) => {
-                std::thread::sleep(std::time::Duration::from_millis(wait));
-            }
-            done => return done,
-        }
-    }
-    opened()
 }
 
 /// What HDF5 says of a file that another program has locked.
@@ -67,7 +72,14 @@ const LOCKED: &str = "unable to lock file";
 /// A missing file, one that is not HDF5, not ours, cut short, or still being written.
 pub(super) fn open(path: &Path, access: Access) -> Result<File> {
     check_signature(path)?;
-    let file = open_unlocked(path, access).map_err(|error| refused(path, access, &error))?;
+    let opened = match access {
+        Access::Read => FileBuilder::new().open(path),
+        Access::Append => for_writing().open_rw(path),
+    };
+    let file = opened.map_err(|error| refused(path, access, &error))?;
+    if access == Access::Append {
+        let_go_of_the_lock(&file);
+    }
     let format = file.attr(FORMAT_ATTRIBUTE).and_then(|attribute| attribute.read_scalar::<i64>());
     match format {
         // What is opened for writing is a copy of a file that was looked over.
@@ -199,30 +211,46 @@ pub(super) fn set_number<T: H5Type>(on: &Location, name: &str, value: T) -> hdf5
 mod tests {
     use super::*;
 
-    /// Locks a file for so long, while it is opened; nothing where that works.
-    fn refused_while_locked(held: std::time::Duration) -> Option<String> {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("r.h5");
-        let file = create(&path).unwrap();
+    /// A result of nothing but its mark.
+    fn marked(path: &Path) -> File {
+        let file = create(path).unwrap();
         file.new_attr::<i64>().create(FORMAT_ATTRIBUTE).unwrap().write_scalar(&FORMAT).unwrap();
-        drop(file);
-        let locked = std::fs::File::open(&path).unwrap();
-        locked.lock().unwrap();
-        let free = std::thread::spawn(move || {
-            std::thread::sleep(held);
-            drop(locked);
-        });
-        let found = open(&path, Access::Read).err().map(|error| error.to_string());
-        free.join().unwrap();
-        found
+        file
     }
 
     #[test]
-    fn a_file_that_is_locked_for_an_instant_is_waited_for_and_another_is_refused() {
-        let instant = refused_while_locked(std::time::Duration::from_millis(5));
-        assert!(instant.is_none(), "{instant:?}");
-        let long = refused_while_locked(std::time::Duration::from_secs(2));
-        assert!(long.as_ref().is_some_and(|text| text.contains("is open for writing in another program")), "{long:?}");
+    fn a_file_that_another_program_has_locked_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("r.h5");
+        drop(marked(&path));
+        let locked = std::fs::File::open(&path).unwrap();
+        locked.lock().unwrap();
+        let found = open(&path, Access::Read).err().map(|error| error.to_string());
+        assert!(
+            found.as_ref().is_some_and(|text| text.contains("is open for writing in another program")),
+            "{found:?}"
+        );
+    }
+
+    /// Programs inherit what is open here when they start.
+    #[cfg(unix)]
+    #[test]
+    fn a_program_that_starts_while_a_result_is_written_does_not_keep_it_from_being_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("r.h5");
+        let beside = || std::process::Command::new("sleep").arg("60").spawn().unwrap();
+        let file = marked(&path);
+        let first = beside();
+        drop(file);
+        let file = open(&path, Access::Append).unwrap();
+        let second = beside();
+        drop(file);
+        let found = open(&path, Access::Read).map(drop).map_err(|error| error.to_string());
+        for mut program in [first, second] {
+            program.kill().unwrap();
+            program.wait().unwrap();
+        }
+        assert_eq!(found, Ok(()));
     }
 
     #[test]
