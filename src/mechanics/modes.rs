@@ -9,6 +9,7 @@ use super::envelope::products;
 use super::implicit::Factor;
 use super::lanes::{BlockWork, LANES, Real, dispatch};
 use super::stiffness::StiffnessMatrix;
+use crate::Vec3;
 
 /// Modes kept of a mesh.
 pub const MODES: usize = 16;
@@ -22,8 +23,18 @@ const ALL_UP_TO: usize = 200;
 /// Vectors that are iterated beside those kept, so that these settle.
 const GUARDS: usize = 8;
 
-/// Rounds of the iteration. What they leave only means that a little of a mode counts as what is left.
+/// Rounds of the iteration, at most. What they leave only means that a little of a mode counts as what is left.
 const ROUNDS: usize = 24;
+
+/// The iteration ends where a round changes no stiffness of a mode by more, over itself: an error of a shape is squared in it. The first of what is left
+/// is then known to some hundredths.
+const SETTLED: f64 = 1e-4;
+
+/// How much of anything is in what an iteration begins with.
+const ANY: f64 = 1e-2;
+
+/// What rounding makes of a mode without stiffness, over the largest eigenvalue.
+const ROUNDED: f64 = 1e-14;
 
 /// What makes K invertible, over its largest eigenvalue.
 const SHIFT: f64 = 1e-7;
@@ -40,10 +51,10 @@ pub struct Modes {
 }
 
 impl Modes {
-    /// The softest modes of K where some atoms are held.
-    pub fn new(stiffness: &StiffnessMatrix, held: &[bool]) -> Self {
+    /// The softest modes of K for a mesh of this rest shape (µm, where iterations begin) of which some atoms are held.
+    pub fn new(stiffness: &StiffnessMatrix, rest: &[Vec3], held: &[bool]) -> Self {
         let free: Vec<usize> = (0..stiffness.atoms()).filter(|&atom| !held[atom]).collect();
-        let pairs = if free.len() <= ALL_UP_TO { all(stiffness, &free) } else { softest(stiffness, held, &free) };
+        let pairs = if free.len() <= ALL_UP_TO { all(stiffness, &free) } else { softest(stiffness, rest, held, &free) };
         let mut modes =
             Self { shapes: vec![OfModes::default(); stiffness.atoms()], stiffness: OfModes::default(), rest: None };
         for (number, (value, vector)) in pairs.iter().take(MODES).enumerate() {
@@ -93,24 +104,56 @@ fn sorted(found: SymmetricEigen<f64, nalgebra::Dyn>, shape: impl Fn(&[f64]) -> V
 }
 
 /// The softest eigenvectors by iteration with the inverse (subspace iteration with Rayleigh and Ritz).
-fn softest(stiffness: &StiffnessMatrix, held: &[bool], free: &[usize]) -> Vec<Pair> {
-    let (atoms, width) = (stiffness.atoms(), MODES + GUARDS);
-    let shift = SHIFT * stiffness.largest().max(f64::MIN_POSITIVE);
-    let inverse = Factor::new(stiffness, shift, 1.0, held);
-    // The first is constant: moving as a whole is a mode of every free mesh, and is to be one exactly.
-    let start = |i: usize| if i.is_multiple_of(width) { 1.0 } else { ((i * 7919 + 13) % 1009) as f64 / 504.5 - 1.0 };
-    let mut values: Vec<f64> = (0..atoms * width).map(|i| if held[i / width] { 0.0 } else { start(i) }).collect();
+fn softest(stiffness: &StiffnessMatrix, rest: &[Vec3], held: &[bool], free: &[usize]) -> Vec<Pair> {
+    let width = MODES + GUARDS;
+    let largest = stiffness.largest().max(f64::MIN_POSITIVE);
+    let inverse = Factor::new(stiffness, SHIFT * largest, 1.0, held);
+    let mut values = smooth(rest);
+    values.chunks_exact_mut(width).zip(held).filter(|(_, held)| **held).for_each(|(row, _)| row.fill(0.0));
     let mut scratch = values.clone();
     orthonormalise(&mut values, width);
-    let mut pairs = Vec::new();
-    for round in 0..ROUNDS {
+    let mut found = projected(stiffness, &values, width);
+    for _ in 0..ROUNDS {
         inverse.solve(width, &mut values, &mut scratch);
         orthonormalise(&mut values, width);
-        if round + 1 == ROUNDS {
-            pairs = ritz(stiffness, free, &values, width);
+        let before = sorted_values(&found);
+        found = projected(stiffness, &values, width);
+        // Moving as a whole has no stiffness but what is rounded.
+        let settled = |(before, now): (&f64, &f64)| (before - now).abs() <= SETTLED * now + ROUNDED * largest;
+        if before.iter().zip(&sorted_values(&found)).take(MODES).all(settled) {
+            break;
         }
     }
-    pairs
+    ritz(found, free, &values, width)
+}
+
+/// Where the iteration begins: the products of up to three coordinates, which soft modes are nearly, and a little of anything, so that none is made of
+/// the others. The first is constant: moving as a whole is a mode of every free mesh, and is to be one exactly.
+fn smooth(rest: &[Vec3]) -> Vec<f64> {
+    const WIDTH: usize = MODES + GUARDS;
+    let middle = rest.iter().sum::<Vec3>() / rest.len() as f64;
+    let size = rest.iter().map(|position| (position - middle).norm()).fold(f64::MIN_POSITIVE, f64::max);
+    let row = |(atom, position): (usize, &Vec3)| -> [f64; WIDTH] {
+        let at = (position - middle) / size;
+        let [x, y, z] = [at.x, at.y, at.z];
+        let products = [1.0, x, y, z, x * x, y * y, z * z, x * y, y * z, z * x, x * y * z];
+        let squares = [x * x, y * y, z * z];
+        let cubes = [x, y, z].into_iter().flat_map(|one| squares.map(|square| one * square));
+        let mut all = products.into_iter().chain(cubes);
+        std::array::from_fn(|mode| {
+            let number = atom * WIDTH + mode;
+            let any = if mode == 0 { 0.0 } else { ((number * 7919 + 13) % 1009) as f64 / 504.5 - 1.0 };
+            all.next().map_or(any, |smooth| smooth + ANY * any)
+        })
+    };
+    rest.iter().enumerate().flat_map(row).collect()
+}
+
+/// The eigenvalues, the least first.
+fn sorted_values(found: &SymmetricEigen<f64, nalgebra::Dyn>) -> Vec<f64> {
+    let mut values: Vec<f64> = found.eigenvalues.iter().copied().collect();
+    values.sort_by(f64::total_cmp);
+    values
 }
 
 /// Gram and Schmidt, twice, over rows of `width` numbers an atom.
@@ -148,8 +191,8 @@ impl BlockWork for GramSchmidt<'_> {
     }
 }
 
-/// The best eigenvectors within the span of columns.
-fn ritz(stiffness: &StiffnessMatrix, free: &[usize], values: &[f64], width: usize) -> Vec<Pair> {
+/// The eigenvectors of K within the span of columns.
+fn projected(stiffness: &StiffnessMatrix, values: &[f64], width: usize) -> SymmetricEigen<f64, nalgebra::Dyn> {
     let mut product = vec![0.0; values.len()];
     for atom in 0..stiffness.atoms() {
         for (other, entry) in stiffness.row(atom) {
@@ -158,11 +201,18 @@ fn ritz(stiffness: &StiffnessMatrix, free: &[usize], values: &[f64], width: usiz
             }
         }
     }
-    let entry = |i: usize, j: usize| -> f64 {
-        values.chunks_exact(width).zip(product.chunks_exact(width)).map(|(v, p)| v[i] * p[j]).sum()
-    };
-    let small = DMatrix::from_fn(width, width, |i, j| 0.5 * (entry(i, j) + entry(j, i)));
-    sorted(SymmetricEigen::new(small), |vector| {
+    let mut small = DMatrix::<f64>::zeros(width, width);
+    for (shapes, products) in values.chunks_exact(width).zip(product.chunks_exact(width)) {
+        for (column, shape) in small.as_mut_slice().chunks_exact_mut(width).zip(shapes) {
+            column.iter_mut().zip(products).for_each(|(to, product)| *to += shape * product);
+        }
+    }
+    SymmetricEigen::new(0.5 * (&small + small.transpose()))
+}
+
+/// The same over atoms, the softest first.
+fn ritz(found: SymmetricEigen<f64, nalgebra::Dyn>, free: &[usize], values: &[f64], width: usize) -> Vec<Pair> {
+    sorted(found, |vector| {
         free.iter().map(|&atom| (0..width).map(|c| vector[c] * values[atom * width + c]).sum()).collect()
     })
 }
@@ -172,22 +222,22 @@ mod tests {
     use super::*;
     use crate::geometry::icosphere;
 
-    fn springs(level: u32, held: &[usize]) -> (StiffnessMatrix, Vec<bool>) {
+    fn springs(level: u32, held: &[usize]) -> (StiffnessMatrix, Vec<Vec3>, Vec<bool>) {
         let ball = icosphere(1.0, level);
         let atoms = ball.positions.len();
         let mut stiffness = StiffnessMatrix::new(atoms);
         for &[i, j, k] in &ball.facets {
             [(i, j), (j, k), (k, i)].into_iter().for_each(|(i, j)| stiffness.add_spring(i as usize, j as usize, 2.0));
         }
-        (stiffness, (0..atoms).map(|atom| held.contains(&atom)).collect())
+        (stiffness, ball.positions, (0..atoms).map(|atom| held.contains(&atom)).collect())
     }
 
     #[test]
     fn modes_are_orthonormal_eigenvectors_and_the_first_moves_all_alike() {
         // 42 and 162 atoms by all eigenvectors, 642 by iteration, which settles the soft ones first.
         for (level, off) in [(1, 1e-12), (2, 1e-12), (3, 1e-3)] {
-            let (stiffness, held) = springs(level, &[]);
-            let modes = Modes::new(&stiffness, &held);
+            let (stiffness, rest, held) = springs(level, &[]);
+            let modes = Modes::new(&stiffness, &rest, &held);
             let column = |k: usize| -> Vec<f64> { modes.shapes.iter().map(|shape| shape[k]).collect() };
             let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
             for k in 0..MODES {
@@ -209,11 +259,11 @@ mod tests {
 
     #[test]
     fn atoms_that_are_held_have_no_part_and_few_atoms_have_all_modes() {
-        let (stiffness, held) = springs(0, &[4]);
-        let modes = Modes::new(&stiffness, &held);
+        let (stiffness, rest, held) = springs(0, &[4]);
+        let modes = Modes::new(&stiffness, &rest, &held);
         assert_eq!(modes.shapes[4], [0.0; MODES]);
         assert!(modes.rest.is_none() && modes.stiffness[0] > 0.0, "eleven free atoms, one of them held beside");
-        let nothing = Modes::new(&stiffness, &[true; 12]);
+        let nothing = Modes::new(&stiffness, &rest, &[true; 12]);
         assert!(nothing.rest.is_none() && nothing.shapes.iter().all(|shape| *shape == [0.0; MODES]));
     }
 }

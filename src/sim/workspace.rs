@@ -167,7 +167,7 @@ impl KindScratch {
         if kind.rigid.is_some() {
             return self.modes.get_or_insert_with(|| Some(rigid())).clone();
         }
-        let make = || Some(Arc::new(Modes::new(stiffness, &kind.held_alike()?)));
+        let make = || Some(Arc::new(Modes::new(stiffness, &kind.rest.positions, &kind.held_alike()?)));
         self.modes.get_or_insert_with(make).clone()
     }
 

@@ -159,7 +159,7 @@ fn balls() -> (Vec<Vec3>, Modes, Response) {
     for &[i, j, k] in &ball.facets {
         [(i, j), (j, k), (k, i)].into_iter().for_each(|(i, j)| stiffness.add_spring(i as usize, j as usize, 3.0));
     }
-    let modes = Modes::new(&stiffness, &vec![false; ball.positions.len()]);
+    let modes = Modes::new(&stiffness, &ball.positions, &vec![false; ball.positions.len()]);
     let response = Response::new(&modes, 1.0, (Order::First, 1.0), 0.5, 2.0);
     let other = ball.positions.iter().map(|x| x + Vec3::new(2.02, 0.1, 0.0));
     (ball.positions.iter().copied().chain(other).collect(), modes, response)

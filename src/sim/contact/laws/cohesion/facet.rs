@@ -33,6 +33,15 @@ pub fn apart(own: &Facet, n: Vec3, facet: &Facet, range: f64) -> f64 {
     from.norm() - own.radius - 0.5 * range - (1.0 + BEHIND) * facet.radius
 }
 
+/// The same more closely, by the planes of both, of facets that have not moved: what is touched from a point is on the plane of the facet, before
+/// the point and no farther off than the range.
+pub fn apart_at_once(own: &Facet, n: Vec3, facet: &Facet, range: f64) -> f64 {
+    let between = facet.middle - own.middle;
+    let before = (n.dot(&between) - 0.5 * range).abs() - 0.5 * range - (1.0 + BEHIND) * facet.radius;
+    let off = facet.normal.dot(&between).abs() - range - own.radius;
+    apart(own, n, facet, range).max(before).max(off)
+}
+
 /// By how much a facet may have come nearer to others at most since it was so, in what [`apart`] measures, be it the one that looks or the
 /// one that is seen.
 pub fn nearer(now: &Facet, then: &Facet, range: f64) -> f64 {
@@ -42,8 +51,38 @@ pub fn nearer(now: &Facet, then: &Facet, range: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::points::points_of_facet;
     use super::*;
+    use crate::contact::opening_to_facet;
     use crate::random::{Purpose, Stream};
+
+    #[test]
+    fn what_may_meet_is_not_apart_and_planes_tell_more_than_balls() {
+        let mut stream = Stream::new(14, Purpose::Placement, 0, 0);
+        let mut number = || 2.0 * stream.uniform_pair()[0] - 1.0;
+        let (mut met, mut by_balls, mut by_planes) = (0, 0, 0);
+        for _ in 0..50_000 {
+            let mut corners = |size: f64| [0, 1, 2].map(|_| size * Vec3::new(number(), number(), number()));
+            let (of_own, there) = (corners(0.5), corners(3.0));
+            let [own, other] = [of_own, there].map(|at| Facet::of(&at));
+            for (range, (own, other), (of_own, there)) in
+                [(0.3, (&own, &other), (&of_own, &there)), (0.3, (&other, &own), (&there, &of_own))]
+            {
+                let apart = [apart(own, own.normal, other, range), apart_at_once(own, own.normal, other, range)];
+                by_balls += usize::from(apart[0] > 0.0);
+                by_planes += usize::from(apart[1] > 0.0);
+                for weights in points_of_facet(2) {
+                    let x = weights[0] * of_own[0] + weights[1] * of_own[1] + weights[2] * of_own[2];
+                    let opening = opening_to_facet(x, own.normal, there, other.normal);
+                    if opening.is_some_and(|(opening, _)| opening.width < range) {
+                        met += 1;
+                        assert!(apart[1] <= 1e-12, "{apart:?}");
+                    }
+                }
+            }
+        }
+        assert!(met > 1000 && by_planes > 2 * by_balls, "{met} {by_balls} {by_planes}");
+    }
 
     #[test]
     fn facets_come_nearer_by_no_more_than_both_have_changed() {

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::super::super::vectors::gather_corners;
-use super::facet::{Facet, apart, nearer};
+use super::facet::{Facet, apart, apart_at_once, nearer};
 use crate::Vec3;
 use crate::contact::{NearFacets, Scene};
 
@@ -25,6 +25,7 @@ impl Surroundings {
     pub fn find(&mut self, scene: &Scene, positions: &[Vec3], range: f64, are_followed: bool) {
         let Self { near, facets, then, nearer: of_facets } = self;
         see_facets(scene, positions, facets);
+        let apart = if are_followed { apart } else { apart_at_once };
         // Rounded so that it is less than it was.
         let apart = |own: u32, other: u32| {
             let has_two = scene.sides_of(scene.body_of_facet(own)) == 2;
