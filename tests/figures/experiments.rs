@@ -25,9 +25,10 @@ fn experiment_keeps_its_word(folder: &str, document: &str) {
 }
 
 /// Pictures that a README shows as what a command makes: the document, the file beside its result, the picture in docs/pictures.
-const SHOWN: [(&str, &str, &str); 43] = [
+const SHOWN: [(&str, &str, &str); 45] = [
     ("aggregation/experiment.toml", "result.png", "aggregation.png"),
     ("aspiration/experiment.toml", "result.png", "aspiration.png"),
+    ("aspiration/release.toml", "result.recovery.png", "aspiration_release.png"),
     ("bending_volume/linear.toml", "result.png", "bending_volume.png"),
     ("cAMP_waves/experiment.toml", "result.png", "camp_waves.png"),
     ("cantilever/experiment.toml", "result.deflection.png", "cantilever.png"),
@@ -37,6 +38,7 @@ const SHOWN: [(&str, &str, &str); 43] = [
     ("contact_inhibition/experiment.toml", "result.png", "contact_inhibition.png"),
     ("contact_inhibition/experiment.toml", "result.touched.png", "contact_inhibition_touched.png"),
     ("cylinder/experiment.toml", "result.force.png", "cylinder.png"),
+    ("dictyostelium/mound.toml", "result.png", "dictyostelium_mound.png"),
     ("doublet/experiment.toml", "result.png", "doublet.png"),
     ("doublet/experiment.toml", "result.area.png", "doublet_area.png"),
     ("falling_spheres/experiment.toml", "result.png", "falling_spheres.png"),
@@ -100,6 +102,11 @@ fn red_cells_recover_in_the_times_that_hochmuth_measured() {
 #[test]
 fn a_cell_is_drawn_into_a_pipette_as_its_tension_lets_it() {
     experiment_keeps_its_word("aspiration", "experiment.toml");
+}
+
+#[test]
+fn a_cell_that_is_let_out_of_a_pipette_recovers_with_viscosity_over_tension() {
+    experiment_keeps_its_word("aspiration", "release.toml");
 }
 
 #[test]
@@ -380,6 +387,12 @@ fn cells_that_stick_too_little_or_too_much_get_nowhere() {
 #[ignore = "slow: a minute"]
 fn amoebae_gather_up_the_waves_that_they_relay() {
     experiment_keeps_its_word("dictyostelium", "experiment.toml");
+}
+
+#[test]
+#[ignore = "slow: some four minutes"]
+fn prestalk_cells_sort_in_a_mound() {
+    experiment_keeps_its_word("dictyostelium", "mound.toml");
 }
 
 #[test]

@@ -89,3 +89,34 @@ fn two_hundred_cells_sort_over_ten_seeds() {
     assert!(mean > 0.8, "{mean}");
     assert!(found.iter().all(|[start, end]| *start < 0.3 && *end > 0.66), "{found:?}");
 }
+
+/// The index and the p value of ten seeds of two hundred cells that wander for 1 500 s and then calm down, with these works of separation between
+/// red and red, red and white, white and white, pN/µm.
+fn two_hundred_with(works: [&str; 3]) -> Vec<[f64; 2]> {
+    let mut sets: Vec<String> =
+        (0..).zip(works).map(|(row, work)| format!("contact.between[{row}].energy={work} pN/um")).collect();
+    sets.extend(["red", "white"].map(|name| format!("chemistry.{name}.set.calm_from=1500")));
+    sets.push("run.until=1900 s".into());
+    let sets: Vec<&str> = sets.iter().map(String::as_str).collect();
+    let found: Vec<[f64; 2]> =
+        (1..=10).map(|seed| measured("two_hundred.toml", seed, &sets, ["segregation", "p_value"])).collect();
+    for (seed, [index, p]) in (1..).zip(&found) {
+        println!("seed {seed}: segregation {index:.3}, p {p:.4}");
+    }
+    found
+}
+
+#[test]
+#[ignore = "slow: ten runs of some four minutes each"]
+fn two_hundred_cells_that_stick_to_the_other_type_alternate_over_ten_seeds() {
+    let found = two_hundred_with(["0.2", "1.5", "0.2"]);
+    // More regular than chance: of 10 000 deals of the types to the same contacts none has as few contacts between alike.
+    assert!(found.iter().all(|[index, p]| *index < -0.15 && *p > 0.999), "{found:?}");
+}
+
+#[test]
+#[ignore = "slow: ten runs of some four minutes each"]
+fn two_hundred_cells_that_stick_to_their_own_type_alone_part_over_ten_seeds() {
+    let found = two_hundred_with(["1.5", "0", "1.5"]);
+    assert!(found.iter().all(|[index, p]| *index > 0.45 && *p < 0.001), "{found:?}");
+}
