@@ -341,6 +341,12 @@ fn the_more_cohesive_cells_come_to_be_inside() {
 }
 
 #[test]
+#[ignore = "slow: a minute"]
+fn cells_whose_tension_fluctuates_keep_their_neighbours() {
+    experiment_keeps_its_word("sorting", "tension.toml");
+}
+
+#[test]
 #[ignore = "slow: some seven minutes"]
 fn two_hundred_cells_sort() {
     experiment_keeps_its_word("sorting", "two_hundred.toml");
