@@ -20,8 +20,8 @@ pub type OfModes = [f64; MODES];
 /// Meshes up to this size have all their eigenvectors found; larger ones only the softest.
 const ALL_UP_TO: usize = 200;
 
-/// Vectors that are iterated beside those kept, so that these settle.
-const GUARDS: usize = 8;
+/// Vectors that are iterated: eight beside those kept, so that these settle.
+const WIDTH: usize = MODES + 8;
 
 /// Rounds of the iteration, at most. What they leave only means that a little of a mode counts as what is left.
 const ROUNDS: usize = 24;
@@ -105,32 +105,30 @@ fn sorted(found: SymmetricEigen<f64, nalgebra::Dyn>, shape: impl Fn(&[f64]) -> V
 
 /// The softest eigenvectors by iteration with the inverse (subspace iteration with Rayleigh and Ritz).
 fn softest(stiffness: &StiffnessMatrix, rest: &[Vec3], held: &[bool], free: &[usize]) -> Vec<Pair> {
-    let width = MODES + GUARDS;
     let largest = stiffness.largest().max(f64::MIN_POSITIVE);
     let inverse = Factor::new(stiffness, SHIFT * largest, 1.0, held);
     let mut values = smooth(rest);
-    values.chunks_exact_mut(width).zip(held).filter(|(_, held)| **held).for_each(|(row, _)| row.fill(0.0));
+    values.chunks_exact_mut(WIDTH).zip(held).filter(|(_, held)| **held).for_each(|(row, _)| row.fill(0.0));
     let mut scratch = values.clone();
-    orthonormalise(&mut values, width);
-    let mut found = projected(stiffness, &values, width);
+    orthonormalise(&mut values, WIDTH);
+    let mut found = projected(stiffness, &values, WIDTH);
     for _ in 0..ROUNDS {
-        inverse.solve(width, &mut values, &mut scratch);
-        orthonormalise(&mut values, width);
+        inverse.solve(WIDTH, &mut values, &mut scratch);
+        orthonormalise(&mut values, WIDTH);
         let before = sorted_values(&found);
-        found = projected(stiffness, &values, width);
+        found = projected(stiffness, &values, WIDTH);
         // Moving as a whole has no stiffness but what is rounded.
         let settled = |(before, now): (&f64, &f64)| (before - now).abs() <= SETTLED * now + ROUNDED * largest;
         if before.iter().zip(&sorted_values(&found)).take(MODES).all(settled) {
             break;
         }
     }
-    ritz(found, free, &values, width)
+    ritz(found, free, &values, WIDTH)
 }
 
 /// Where the iteration begins: the products of up to three coordinates, which soft modes are nearly, and a little of anything, so that none is made of
 /// the others. The first is constant: moving as a whole is a mode of every free mesh, and is to be one exactly.
 fn smooth(rest: &[Vec3]) -> Vec<f64> {
-    const WIDTH: usize = MODES + GUARDS;
     let middle = rest.iter().sum::<Vec3>() / rest.len() as f64;
     let size = rest.iter().map(|position| (position - middle).norm()).fold(f64::MIN_POSITIVE, f64::max);
     let row = |(atom, position): (usize, &Vec3)| -> [f64; WIDTH] {
@@ -255,6 +253,20 @@ mod tests {
             assert!(modes.stiffness[0] < 1e-10 && column(0).iter().all(|part| (part.abs() - even).abs() < 1e-12));
             assert!(modes.rest.is_some_and(|rest| rest >= modes.stiffness[MODES - 1]));
         }
+    }
+
+    #[test]
+    fn what_the_iteration_leaves_of_stiffnesses_is_as_little_as_its_constants_say() {
+        let (stiffness, rest, held) = springs(3, &[]);
+        let free: Vec<usize> = (0..held.len()).collect();
+        let modes = Modes::new(&stiffness, &rest, &held);
+        let exact: Vec<f64> = all(&stiffness, &free).iter().map(|(value, _)| *value).collect();
+        for (found, exact) in modes.stiffness.iter().zip(&exact).skip(1) {
+            assert!((-1e-9..SETTLED).contains(&(found / exact - 1.0)), "{found} {exact}");
+        }
+        let left = modes.rest.expect("more than the modes") / exact[MODES] - 1.0;
+        println!("the softest of what is left: {left}");
+        assert!((-1e-9..0.03).contains(&left), "{left}");
     }
 
     #[test]

@@ -342,7 +342,7 @@ fn the_more_cohesive_cells_come_to_be_inside() {
 
 #[test]
 #[ignore = "slow: a minute"]
-fn cells_whose_tension_fluctuates_keep_their_neighbours() {
+fn cells_whose_tension_fluctuates_stay_together_and_do_not_sort() {
     experiment_keeps_its_word("sorting", "tension.toml");
 }
 

@@ -76,6 +76,7 @@ mod tests {
                     let opening = opening_to_facet(x, own.normal, there, other.normal);
                     if opening.is_some_and(|(opening, _)| opening.width < range) {
                         met += 1;
+                        // Lengths of some µm, rounded.
                         assert!(apart[1] <= 1e-12, "{apart:?}");
                     }
                 }
