@@ -27,7 +27,7 @@ const WIDTH: usize = MODES + 8;
 const ROUNDS: usize = 24;
 
 /// The iteration ends where a round changes no stiffness of a mode by more, over itself: an error of a shape is squared in it. The first of what is left
-/// is then known to some hundredths.
+/// is then known to a hundredth.
 const SETTLED: f64 = 1e-4;
 
 /// How much of anything is in what an iteration begins with.
@@ -257,6 +257,7 @@ mod tests {
 
     #[test]
     fn what_the_iteration_leaves_of_stiffnesses_is_as_little_as_its_constants_say() {
+        // By all eigenvectors, which rounding leaves to 1e-9 of a stiffness.
         let (stiffness, rest, held) = springs(3, &[]);
         let free: Vec<usize> = (0..held.len()).collect();
         let modes = Modes::new(&stiffness, &rest, &held);
@@ -266,7 +267,7 @@ mod tests {
         }
         let left = modes.rest.expect("more than the modes") / exact[MODES] - 1.0;
         println!("the softest of what is left: {left}");
-        assert!((-1e-9..0.03).contains(&left), "{left}");
+        assert!((-1e-9..0.01).contains(&left), "{left}");
     }
 
     #[test]
