@@ -37,6 +37,9 @@ pub enum EngulfmentStatistic {
     Order,
     /// The segregation index that the cells would have if those of the type were the innermost ones.
     Ceiling,
+    /// The segregation index over that ceiling, eq. (analysis.42): 0 at random, 1 where cells of different types touch no more than if those of the type were the
+    /// innermost ones.
+    Relative,
 }
 
 impl Engulfment {
@@ -84,6 +87,7 @@ impl Engulfment {
         Ok(match self.statistic {
             EngulfmentStatistic::Order => layers.order(),
             EngulfmentStatistic::Ceiling => layers.ceiling(&pairs),
+            EngulfmentStatistic::Relative => layers.segregation(&pairs) / layers.ceiling(&pairs),
         })
     }
 }
@@ -124,11 +128,22 @@ impl Layers {
         self.nearer(|rank| self.cells[rank].2) / self.nearer(|rank| rank < self.inner)
     }
 
+    /// The segregation index of the pairs.
+    fn segregation(&self, pairs: &[[u32; 2]]) -> f64 {
+        self.segregation_if(pairs, |rank| self.cells[rank].2)
+    }
+
     /// The segregation index of the same pairs if the inner ones were the innermost.
     fn ceiling(&self, pairs: &[[u32; 2]]) -> f64 {
+        self.segregation_if(pairs, |rank| rank < self.inner)
+    }
+
+    fn segregation_if(&self, pairs: &[[u32; 2]], is_inner: impl Fn(usize) -> bool) -> f64 {
         let most = self.cells.iter().map(|(cell, ..)| *cell as usize).max().unwrap_or(0);
         let mut types = vec![1; most + 1];
-        self.cells[..self.inner].iter().for_each(|(cell, ..)| types[*cell as usize] = 0);
+        for (rank, (cell, ..)) in self.cells.iter().enumerate() {
+            types[*cell as usize] = u32::from(!is_inner(rank));
+        }
         segregation(&types, pairs)
     }
 }
@@ -153,6 +168,20 @@ mod tests {
         assert!((outside.order() - (6.0 / 5.0 - 3.5) / (16.0 / 5.0 - 1.0)).abs() < 1e-15, "{}", outside.order());
         // Of eight pairs six are alike; of pairs dealt at random (3·2 + 6·5)/(9·8) = 1/2.
         assert!((inside.ceiling(&pairs) - (6.0 / 8.0 - 0.5) / 0.5).abs() < 1e-15);
+    }
+
+    #[test]
+    fn segregation_is_told_relative_to_what_layers_would_have() {
+        let (inside, pairs) = row([0, 0, 0, 1, 1, 1, 0, 0, 0]);
+        assert_eq!(inside.segregation(&pairs).to_bits(), inside.ceiling(&pairs).to_bits());
+        // Two pairs are of two types either way: one type need not be in the middle of the other to be as segregated.
+        let (beside, _) = row([1, 1, 1, 1, 1, 0, 0, 0, 1]);
+        assert!((beside.segregation(&pairs) / beside.ceiling(&pairs) - 1.0).abs() < 1e-15);
+        // Every pair is.
+        let (mixed, _) = row([1, 0, 1, 0, 1, 0, 1, 0, 1]);
+        let random = (5.0 * 4.0 + 4.0 * 3.0) / (9.0 * 8.0);
+        assert!((mixed.segregation(&pairs) + random / (1.0 - random)).abs() < 1e-15);
+        assert!((mixed.ceiling(&pairs) - (6.0 / 8.0 - random) / (1.0 - random)).abs() < 1e-15);
     }
 
     #[test]
