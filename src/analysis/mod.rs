@@ -6,9 +6,12 @@ pub mod circular;
 pub mod claims;
 mod csv_fields;
 pub mod curve;
+pub mod displacement_map;
 pub mod fields;
 pub mod fronts;
 pub mod furth;
+mod gel;
+mod half_space;
 pub mod measures;
 pub mod msd;
 #[cfg(test)]

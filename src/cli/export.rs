@@ -11,6 +11,7 @@ use super::files::{Named, refuse_existing, refuse_existing_folder, refuse_same};
 use super::report::Report;
 use crate::Vec3;
 use crate::analysis::aggregates::table_of_changes;
+use crate::analysis::displacement_map::DisplacementMap;
 use crate::error::words::all_of;
 use crate::error::{Error, Fault, Result};
 use crate::experiment::When;
@@ -23,7 +24,13 @@ use crate::output::{
 use model::{write_loads, write_model};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use what::What;
+use what::{What, is_in_pixels};
+
+/// Pixels between the points of a map when it is not said what a pixel is.
+const PIXELS: f64 = 16.0;
+
+/// Numbers of pixels that are as near to whole ones as this are whole.
+const ROUND_OFF: f64 = 1e-6;
 
 /// Runs the command.
 ///
@@ -73,6 +80,7 @@ fn write(args: &ExportArgs, result: &ResultFile, what: What, output: &Path) -> R
             Some(table) => write_table(result, &table, output)?,
             None => write_text(&table_of_changes(result)?, output)?,
         },
+        What::Map => write_text(&map_of(args, result, output)?, output)?,
         What::Package => return write_biotracks(result, output),
         What::Surface => {
             let frame = args.frame.of(result, When::Last)?;
@@ -117,6 +125,30 @@ fn write(args: &ExportArgs, result: &ResultFile, what: What, output: &Path) -> R
         }
     }
     Ok(vec![output.to_path_buf()])
+}
+
+/// How the face of a gel has moved, for a file of this name.
+fn map_of(args: &ExportArgs, result: &ResultFile, output: &Path) -> Result<String> {
+    let name = args.displacements.as_deref().unwrap_or_default();
+    let frame = args.frame.of(result, When::Last)?;
+    for (option, length) in [("--spacing", args.spacing), ("--pixel", args.pixel)] {
+        if let Some(length) = length.filter(|length| length.value() <= 0.0) {
+            let fault = Fault::new(format!("{option} is {length}")).help("give a length above 0, as in \"1 um\"");
+            return Err(Error::input(fault));
+        }
+    }
+    let map = DisplacementMap::of(result, name, frame, args.spacing.map(|spacing| spacing.value()))?;
+    if !is_in_pixels(output) {
+        return Ok(map.as_csv());
+    }
+    let pixel = args.pixel.map_or(map.spacing / PIXELS, |pixel| pixel.value());
+    let pixels = map.spacing / pixel;
+    if pixels < 1.0 - ROUND_OFF || (pixels - pixels.round()).abs() > ROUND_OFF * pixels {
+        let message = format!("a spacing of {} um is {pixels} pixels of {pixel} um", map.spacing);
+        let fault = Fault::new(message).help("give a spacing of a whole number of pixels: both --spacing and --pixel");
+        return Err(Error::input(fault));
+    }
+    Ok(map.in_pixels(pixel))
 }
 
 /// The field that is asked for, and which of its species.

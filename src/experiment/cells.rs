@@ -231,6 +231,10 @@ pub struct Finest {
     /// edges of a sphere are opposite; between the map is conformal.
     #[schemars(range(min = 1, max = 100))]
     pub ratio: f64,
+    /// Up to which distance from the point, along each axis, parts of a block are as short as at it.
+    #[schemars(extend("x-minimum" = 0))]
+    #[serde(default, skip_serializing_if = "is_sharp")]
+    pub even: Length,
 }
 
 /// Whether corners are not rounded.

@@ -103,6 +103,21 @@ pub fn mean_edge_length(surface: &Surface) -> f64 {
     if surface.facets.is_empty() { 0.0 } else { total / (3 * surface.facets.len()) as f64 }
 }
 
+/// The mean length of the edges of the facets around the atom where it is least, µm; 0 without facets.
+pub fn finest_edge_length(surface: &Surface) -> f64 {
+    let mut sums = vec![(0.0, 0.0); surface.positions.len()];
+    for &facet in &surface.facets {
+        let [a, b, c] = surface.corners(facet);
+        let around = (b - a).norm() + (c - b).norm() + (a - c).norm();
+        for corner in facet {
+            let (sum, count) = &mut sums[corner as usize];
+            (*sum, *count) = (*sum + around, *count + 3.0);
+        }
+    }
+    let around = sums.iter().filter(|(_, count)| *count > 0.0).map(|(sum, count)| sum / count);
+    if surface.facets.is_empty() { 0.0 } else { around.fold(f64::INFINITY, f64::min) }
+}
+
 /// The smallest and the largest coordinates of a set of points, µm; `None` without points.
 pub fn bounding_box(positions: &[Vec3]) -> Option<(Vec3, Vec3)> {
     let first = *positions.first()?;

@@ -31,7 +31,7 @@ pub use import::{read_checked_surface, read_surface};
 pub use lathe::lathe;
 pub use measure::{
     area, area_vectors, atom_areas, atom_normals, bounding_box, centre_of_volume, facet_areas, facet_qualities,
-    mean_edge_length, smallest_angle, volume, volume_gradient,
+    finest_edge_length, mean_edge_length, smallest_angle, volume, volume_gradient,
 };
 pub use obstacle::Obstacle;
 pub use occupied::{Occupied, point_in_box};

@@ -168,7 +168,7 @@ fn solve_axes(factors: &[Factor], lanes: usize, values: &mut [f64], scratch: &mu
 }
 
 /// Solves A Y = F for a block of `lanes` cells, or of as many right sides of one cell that has a stiffness of its own, with rigid motion
-/// taken out, eq. (step.4); F is replaced by Y.
+/// taken out, eq. (step.4); F is replaced by Y. Of such a cell there may be several sets of right sides, one after the other.
 pub fn solve_block(
     kind: &Kind,
     lanes: usize,
@@ -210,15 +210,20 @@ fn solve_with(
     spare: &mut [f64],
     spare2: &mut [f64],
 ) {
+    let set = 3 * kind.atoms() * lanes;
     if kind.is_held() {
-        volume::hold(lanes, &kind.held, y);
+        y.chunks_exact_mut(set).for_each(|y| volume::hold(lanes, &kind.held, y));
         solve(y, spare);
     } else {
-        rigid::split_block(lanes, kind.atoms(), x, y, spare, whole);
+        for (y, spare) in y.chunks_exact_mut(set).zip(spare.chunks_exact_mut(set)) {
+            rigid::split_block(lanes, kind.atoms(), x, y, spare, whole);
+        }
         if kind.rigid.is_some() {
             return y.copy_from_slice(spare);
         }
         solve(y, spare2);
-        rigid::join_block(lanes, kind.atoms(), x, y, spare);
+        for (y, spare) in y.chunks_exact_mut(set).zip(spare.chunks_exact(set)) {
+            rigid::join_block(lanes, kind.atoms(), x, y, spare);
+        }
     }
 }

@@ -11,6 +11,9 @@ use crate::mechanics::lanes::LANES;
 /// Buffers of a thread.
 const ARRAYS: usize = 6;
 
+/// Sets of right sides of one cell that are solved for at once, so that its factor is read once for all of them.
+pub const SETS: usize = 4;
+
 /// Arrays of the shape of a block's positions.
 type Buffers = [Vec<f64>; ARRAYS];
 
@@ -28,8 +31,10 @@ impl Clone for ThreadBuffers {
 impl ThreadBuffers {
     /// Makes buffers for all threads, large enough for every block of a model. Nothing is allocated where they are there.
     pub fn suit(&mut self, model: &Model) {
-        // Cells that have a stiffness of their own are solved for several right sides at once.
-        let length = |kind: &Kind| if kind.tangent.is_some() { 3 * kind.atoms() * LANES } else { kind.block_len() };
+        // Cells that have a stiffness of their own are solved for several right sides at once: where contacts ask them, for many.
+        let sets = if model.contact.is_some() { SETS } else { 1 };
+        let length =
+            |kind: &Kind| if kind.tangent.is_some() { 3 * kind.atoms() * LANES * sets } else { kind.block_len() };
         let longest = model.kinds.iter().map(length).max().unwrap_or(0);
         let factor = model.kinds.iter().map(|kind| kind.tangent.as_ref().map_or(0, |tangent| tangent.len(kind.lanes)));
         let factor = factor.max().unwrap_or(0);

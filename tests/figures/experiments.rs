@@ -25,7 +25,7 @@ fn experiment_keeps_its_word(folder: &str, document: &str) {
 }
 
 /// Pictures that a README shows as what a command makes: the document, the file beside its result, the picture in docs/pictures.
-const SHOWN: [(&str, &str, &str); 45] = [
+const SHOWN: [(&str, &str, &str); 46] = [
     ("aggregation/experiment.toml", "result.png", "aggregation.png"),
     ("aspiration/experiment.toml", "result.png", "aspiration.png"),
     ("aspiration/release.toml", "result.recovery.png", "aspiration_release.png"),
@@ -69,6 +69,7 @@ const SHOWN: [(&str, &str, &str); 45] = [
     ("substrates/experiment.toml", "result.png", "substrates_sheet.png"),
     ("substrates/step.toml", "result.png", "substrates_step.png"),
     ("traction/experiment.toml", "result.png", "traction.png"),
+    ("traction_gel/experiment.toml", "result.png", "traction_gel.png"),
     ("truth_cube/experiment.toml", "result.png", "truth_cube.png"),
     ("turing/experiment.toml", "result.png", "turing.png"),
 ];
@@ -140,6 +141,18 @@ fn a_shell_dents_as_reissner_found() {
 #[ignore = "slow: a minute and a half; cargo test --release --test figures a_ball_on_a_gel -- --ignored"]
 fn a_ball_on_a_gel_feels_a_thin_layer() {
     experiment_keeps_its_word("indentation", "experiment.toml");
+}
+
+#[test]
+#[ignore = "slow: two minutes; cargo test --release --test figures a_gel_that -- --ignored"]
+fn a_gel_that_a_cell_pulls_at_moves_as_a_half_space() {
+    experiment_keeps_its_word("traction_gel", "experiment.toml");
+}
+
+#[test]
+#[ignore = "slow: fifteen minutes; cargo test --release --test figures a_finer_gel -- --ignored"]
+fn a_finer_gel_moves_more_as_a_half_space() {
+    experiment_keeps_its_word("traction_gel", "fine.toml");
 }
 
 #[test]

@@ -17,6 +17,7 @@ mod events;
 mod fibres;
 mod forces;
 mod friction;
+mod gel_face;
 mod glossary;
 mod indentation;
 mod inertial;

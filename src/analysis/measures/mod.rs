@@ -15,6 +15,7 @@ mod fit;
 mod forward_index;
 mod fronts;
 mod gaps;
+mod half_space;
 mod msd_deviation;
 mod msd_exponent;
 mod period;
@@ -55,6 +56,7 @@ pub use fit::Fit;
 pub use forward_index::{ForwardIndex, ForwardPart};
 pub use fronts::Fronts;
 pub use gaps::{GapStatistic, Gaps};
+pub use half_space::{HalfSpace, HalfSpaceStatistic};
 pub use msd_deviation::MsdDeviation;
 pub use msd_exponent::MsdExponent;
 pub use period::Period;
@@ -186,6 +188,9 @@ pub enum MeasureKind {
     Gaps(Gaps),
     /// How cells pull at the planes that they stand on: the sums of the forces ahead and behind, their dipole, or where they pull most.
     Traction(Traction),
+    /// Whether the surface of a gel moves as that of an elastic half space does under the tractions on it: how far both are apart, or how far
+    /// they go.
+    HalfSpace(HalfSpace),
 }
 
 impl MeasureKind {
@@ -212,6 +217,7 @@ impl MeasureKind {
             Self::RunLengthP(_) | Self::FieldValue(_) | Self::Wavelength(_) | Self::Segregation(_) => Vec::new(),
             Self::Engulfment(_) | Self::Displacement(_) | Self::DisplacementError(_) => Vec::new(),
             Self::Fronts(_) | Self::Gaps(_) | Self::Pseudopods(_) | Self::Traction(_) => Vec::new(),
+            Self::HalfSpace(_) => Vec::new(),
         };
         names.into_iter().filter(|name| *name != "time").collect()
     }
@@ -245,6 +251,7 @@ impl MeasureKind {
             Self::Fronts(fronts) => fronts.check(at),
             Self::Gaps(gaps) => gaps.check(at),
             Self::Traction(traction) => traction.check(at),
+            Self::HalfSpace(gel) => gel.check(at),
             Self::SphereShear(_) | Self::TableRms(_) | Self::TableRatio(_) | Self::RunLengthP(_) => {}
         }
     }
@@ -288,6 +295,7 @@ impl MeasureKind {
             Self::Fronts(fronts) => fronts.evaluate(run),
             Self::Gaps(gaps) => gaps.evaluate(run),
             Self::Traction(traction) => traction.evaluate(run),
+            Self::HalfSpace(gel) => gel.evaluate(run),
         }
     }
 }

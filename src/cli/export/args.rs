@@ -1,6 +1,7 @@
 //! The options of `export`.
 
 use crate::cli::frames::FrameArgs;
+use crate::units::Length;
 use std::path::PathBuf;
 
 /// Writes the cells of a frame as OBJ, PLY, STL, VTU or PML, in um, or of all frames as PVD, a field as VTI, PVD, OME-TIFF or
@@ -40,6 +41,16 @@ pub struct ExportArgs {
     /// A field, FIELD.SPECIES for one of its species only; the first field in a .vti or .ome.tiff when absent.
     #[arg(long, value_name = "FIELD")]
     pub field: Option<String>,
+    /// How far the upper face of the one body of a type has moved since the first frame, such as a gel under cells: a regular grid for programs of traction
+    /// force microscopy, in um and with tractions in a .csv, in pixels in a .txt.
+    #[arg(long, value_name = "TYPE", conflicts_with_all = ["table", "field"])]
+    pub displacements: Option<String>,
+    /// Between the points of that grid, as in "1 um"; a sixty-fourth of the face when absent.
+    #[arg(long, value_name = "LENGTH", requires = "displacements")]
+    pub spacing: Option<Length>,
+    /// What a pixel of a .txt is, as in "0.1 um"; a sixteenth of the spacing when absent.
+    #[arg(long, value_name = "LENGTH", requires = "displacements")]
+    pub pixel: Option<Length>,
     /// What a table holds; series when absent.
     #[arg(long, value_enum)]
     pub table: Option<TableKind>,

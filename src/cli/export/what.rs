@@ -17,6 +17,8 @@ pub enum What {
     MeshSeries,
     /// Numbers of the result.
     Table,
+    /// How far the face of a gel has moved, on a grid.
+    Map,
     /// A folder of tables.
     Package,
     /// A frame of a field as a table.
@@ -38,6 +40,7 @@ impl What {
         let ending = output.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
         let what = match ending.as_deref() {
             _ if args.table == Some(TableKind::Biotracks) => Self::Package,
+            Some("csv" | "txt") if args.displacements.is_some() => Self::Map,
             Some("csv") if args.field.is_some() => Self::FieldTable,
             Some("csv") => Self::Table,
             Some("vti") => Self::FieldImage,
@@ -52,7 +55,7 @@ impl What {
                 let fault = Fault::new(format!("cannot tell from its name what to write to {name}"));
                 return Err(Error::input(fault.help(
                     "let the name end in .obj, .ply, .stl, .vtu or .pml for a mesh, .pvd for all frames of it, .vti or .ome.tiff \
-                     for a field, .csv for a table",
+                     for a field, .csv for a table, .txt for a map of --displacements",
                 )));
             }
         };
@@ -73,6 +76,7 @@ impl What {
             () if args.table.is_some() => "--table",
             () if !args.series.is_empty() => "--series",
             () if args.field.is_some() => "--field",
+            () if args.displacements.is_some() => "--displacements",
             () => return Ok(()),
         };
         let fault = Fault::new(format!("{unused} has no meaning for {}", page.display()));
@@ -101,15 +105,22 @@ impl What {
             () if !table && !args.series.is_empty() => "--series",
             () if !args.series.is_empty() && args.table.is_some_and(|kind| kind != TableKind::Series) => "--series",
             () if !field && args.field.is_some() => "--field",
+            () if self != Map && args.displacements.is_some() => "--displacements",
+            () if args.pixel.is_some() && !is_in_pixels(output) => "--pixel",
             () => return Ok(()),
         };
         let fault = Fault::new(format!("{unused} has no meaning for {}", output.display())).help(
             "--frame and --time belong to one frame of a mesh (.obj, .ply, .stl, .vtu, .pml) or of a field (.vti, .ome.tiff, or \
              .csv with --field), --every to all frames (.pvd, .ome.tiff), --cell to a mesh, --field to a field, --table and \
-             --series to a table (.csv)",
+             --series to a table (.csv), --displacements to a map (.csv, .txt), --pixel to one in pixels (.txt)",
         );
         Err(Error::input(fault))
     }
+}
+
+/// Whether a map is written in pixels.
+pub fn is_in_pixels(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("txt"))
 }
 
 /// Whether `.ome` stands before the ending of a file.

@@ -5,6 +5,7 @@ use super::super::{Document, Experiment};
 use super::bonds::kinetics;
 use crate::contact::Reach;
 use crate::error::{Error, Fault, Result, short};
+use crate::geometry::finest_edge_length;
 use crate::sim::contact::{
     AREA_WITHIN, AdhesiveTable, CohesionTable, Cohesive, ContactModel, Law, LinkTable, Penalty, Strength, Zones,
 };
@@ -93,6 +94,11 @@ pub fn check_area_within(document: &Document, kinds: &[Kind]) -> Result<()> {
     Err(Error::input(location.into_iter().fold(fault, Fault::at)))
 }
 
+/// The edges of a mesh where it is finest, µm, if they are less than half of the mean there: a mesh is made so where it is to touch.
+fn finer_edge(kind: &Kind) -> Option<f64> {
+    Some(finest_edge_length(&kind.rest)).filter(|finest| *finest < 0.5 * kind.edge)
+}
+
 /// Refuses ranges of attraction that do not fit the meshes of the cells that have them.
 ///
 /// # Errors
@@ -122,10 +128,11 @@ pub fn check_ranges(document: &Document, kinds: &[Kind]) -> Result<()> {
             (None, _, None) => Told::ByDefault(format!("{path}.energy")),
             (_, _, None) => Told::ByDefault(format!("{path}.strength")),
         };
-        let coarse = of.iter().map(|kind| &kinds[*kind]).max_by(|one, other| one.edge.total_cmp(&other.edge));
+        let edge = |kind: &Kind| finer_edge(kind).unwrap_or(kind.edge);
+        let coarse = of.iter().map(|kind| &kinds[*kind]).max_by(|one, other| edge(one).total_cmp(&edge(other)));
         let fine = of.iter().map(|kind| &kinds[*kind]).min_by(|one, other| one.edge.total_cmp(&other.edge));
         let (Some(coarse), Some(fine)) = (coarse, fine) else { continue };
-        if range > 0.0 && range < RANGES.start() * coarse.edge {
+        if range > 0.0 && range < RANGES.start() * edge(coarse) {
             faults.push(range_fault(document, &told, (range, coarse), "short", "at least half an edge"));
         } else if range > RANGES.end() * fine.edge {
             faults.push(range_fault(document, &told, (range, fine), "long", "at most ten edges"));
@@ -161,13 +168,13 @@ fn range_fault(document: &Document, told: &Told, (range, kind): (f64, &Kind), to
             ("the default range of attraction is", "another `range`", path.clone(), "sticks as far as the default")
         }
     };
-    let fault = Fault::new(format!(
-        "{range_is} {} um: too {too} for the mesh of type `{}`, whose mean edge is {} um",
-        short(range),
-        kind.name,
-        short(kind.edge)
-    ))
-    .help(format!("take {advice}: one to two edges are best, and the range must be {fits}"));
+    let edges = match finer_edge(kind).filter(|_| is_short) {
+        Some(edge) => format!("whose edges are {} um where it is finest", short(edge)),
+        None => format!("whose mean edge is {} um", short(kind.edge)),
+    };
+    let fault =
+        Fault::new(format!("{range_is} {} um: too {too} for the mesh of type `{}`, {edges}", short(range), kind.name))
+            .help(format!("take {advice}: one to two edges are best, and the range must be {fits}"));
     document.location(&key, label).into_iter().fold(fault, Fault::at)
 }
 

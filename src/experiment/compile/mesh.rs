@@ -8,7 +8,7 @@ use super::model::{self, is_model};
 use super::numbers::unit;
 use crate::Vec3;
 use crate::error::{Error, Fault};
-use crate::geometry::solid::{self, Solid};
+use crate::geometry::solid::{self, Grading, Solid};
 use crate::geometry::{self, SolidFault, Surface, SurfaceRules};
 use nalgebra::{Unit, UnitQuaternion};
 
@@ -38,6 +38,12 @@ pub fn surface(document: &Document, name: &str, cell: &CellType, faults: &mut Ve
                     faults.push(refused(document, &key, "the centre of the sphere", message, help));
                     return None;
                 }
+                if finest.even.value() > 0.0 {
+                    let message = format!("the facets of `cells.{name}.mesh` grow from one point of the sphere on");
+                    let key = format!("cells.{name}.mesh.finest.even");
+                    faults.push(refused(document, &key, "for blocks", message, "leave it out"));
+                    return None;
+                }
                 geometry::grade_sphere(&mut sphere.positions, &at, finest.ratio);
             }
             sphere
@@ -53,7 +59,11 @@ pub fn surface(document: &Document, name: &str, cell: &CellType, faults: &mut Ve
         }
         Mesh::Block { size, divisions, finest } => {
             let size = size.map(|x| x.value());
-            let (at, ratio) = finest.map_or(([0.0; 3], 1.0), |finest| (finest.at.map(|x| x.value()), finest.ratio));
+            let at = finest.map_or([0.0; 3], |finest| finest.at.map(|x| x.value()));
+            let grading = finest.map_or(Grading { ratio: 1.0, even: 0.0 }, |finest| Grading {
+                ratio: finest.ratio,
+                even: finest.even.value(),
+            });
             if (0..3).any(|axis| at[axis].abs() > 0.5 * size[axis]) {
                 let message = format!("the parts of `cells.{name}.mesh` are finest at a point that is not within it");
                 let help = "give a point within the block: it is centred on [0, 0, 0] and reaches half of its size to both sides";
@@ -66,7 +76,7 @@ pub fn surface(document: &Document, name: &str, cell: &CellType, faults: &mut Ve
                 ));
                 return None;
             }
-            let made = solid::graded_block(size, *divisions, at, ratio);
+            let made = solid::graded_block(size, *divisions, at, grading);
             filled(sound(document, name, made, faults)?)
         }
         Mesh::Rod { radius, length, middle, rings, layers } => {

@@ -8,11 +8,19 @@ use crate::Vec3;
 /// # Errors
 /// Flat tetrahedra, where parts are far longer along one axis than along another, or no parts at all.
 pub fn block(size: [f64; 3], divisions: [u32; 3]) -> Result<Solid, Vec<SolidFault>> {
-    graded_block(size, divisions, [0.0; 3], 1.0)
+    graded_block(size, divisions, [0.0; 3], Grading { ratio: 1.0, even: 0.0 })
 }
 
-/// The same with parts that are finest at a point within it (µm): along each axis they grow with the distance from it, to `ratio` times as long at
-/// the end that is farther.
+/// How parts grow away from where they are finest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Grading {
+    /// How many times as long they are at the end that is farthest.
+    pub ratio: f64,
+    /// Up to which distance they do not grow, µm.
+    pub even: f64,
+}
+
+/// The same with parts that are finest at a point within it (µm): along each axis they grow with the distance from it.
 ///
 /// # Errors
 /// As [`block`].
@@ -20,11 +28,11 @@ pub fn graded_block(
     size: [f64; 3],
     divisions: [u32; 3],
     finest: [f64; 3],
-    ratio: f64,
+    grading: Grading,
 ) -> Result<Solid, Vec<SolidFault>> {
     let [nx, ny, nz] = divisions;
     let number = |i: u32, j: u32, k: u32| (k * (ny + 1) + j) * (nx + 1) + i;
-    let axes: [Vec<f64>; 3] = std::array::from_fn(|axis| graded(size[axis], divisions[axis], finest[axis], ratio));
+    let axes: [Vec<f64>; 3] = std::array::from_fn(|axis| graded(size[axis], divisions[axis], finest[axis], grading));
     let along = |axis: usize, i: u32| axes[axis][i as usize];
     let (mut positions, mut cells) = (Vec::new(), Vec::new());
     for k in 0..=nz {
@@ -44,13 +52,17 @@ pub fn graded_block(
     Solid::of_cells(&positions, &cells).map(|(solid, _)| solid)
 }
 
-/// Where a length that is centred is cut into parts whose lengths grow with the distance from a point, to `ratio` times the shortest.
-fn graded(length: f64, parts: u32, finest: f64, ratio: f64) -> Vec<f64> {
+/// Where a length that is centred is cut into parts whose lengths grow with the distance from a point.
+fn graded(length: f64, parts: u32, finest: f64, Grading { ratio, even }: Grading) -> Vec<f64> {
     let (low, high) = (-0.5 * length - finest, 0.5 * length - finest);
-    let growth = (ratio - 1.0) / high.max(-low);
+    let far = high.max(-low) - even;
+    let growth = if far > 0.0 { (ratio - 1.0) / far } else { 0.0 };
     // Counted in parts from the finest point on, and back.
-    let counted = |s: f64| if growth > 0.0 { s.signum() * (growth * s.abs()).ln_1p() / growth } else { s };
-    let at = |u: f64| if growth > 0.0 { u.signum() * (growth * u.abs()).exp_m1() / growth } else { u };
+    let changed = |s: f64, beyond: fn(f64) -> f64| match s.abs() - even {
+        over if growth > 0.0 && over > 0.0 => s.signum() * (even + beyond(growth * over) / growth),
+        _ => s,
+    };
+    let (counted, at) = (|s: f64| changed(s, f64::ln_1p), |u: f64| changed(u, f64::exp_m1));
     let (first, last) = (counted(low), counted(high));
     let inner = |i: u32| finest + at(first + (last - first) * (f64::from(i) / f64::from(parts)));
     let of = |i: u32| match i {
@@ -67,7 +79,7 @@ mod tests {
 
     #[test]
     fn parts_grow_away_from_where_they_are_finest() {
-        let at = graded(10.0, 20, 2.0, 5.0);
+        let at = graded(10.0, 20, 2.0, Grading { ratio: 5.0, even: 0.0 });
         let parts: Vec<f64> = at.windows(2).map(|pair| pair[1] - pair[0]).collect();
         assert_eq!((at[0], at[20], parts.len()), (-5.0, 5.0, 20));
         let finest = (0..20).min_by(|&a, &b| parts[a].total_cmp(&parts[b])).expect("parts");
@@ -75,7 +87,29 @@ mod tests {
         assert!(parts[..finest].is_sorted_by(|a, b| a > b) && parts[finest..].is_sorted(), "{parts:?}");
         let ratio = parts[0] / parts[finest];
         assert!((4.0..5.0).contains(&ratio), "{ratio}");
-        let even = graded(10.0, 4, 1.0, 1.0);
-        assert!(even.iter().zip([-5.0, -2.5, 0.0, 2.5, 5.0]).all(|(a, b)| (a - b).abs() < 1e-12), "{even:?}");
+        for grading in [Grading { ratio: 1.0, even: 0.0 }, Grading { ratio: 9.0, even: 6.0 }] {
+            let even = graded(10.0, 4, 1.0, grading);
+            assert!(even.iter().zip([-5.0, -2.5, 0.0, 2.5, 5.0]).all(|(a, b)| (a - b).abs() < 1e-12), "{even:?}");
+        }
+    }
+
+    #[test]
+    fn parts_are_even_beside_where_they_are_finest() {
+        let at = graded(80.0, 20, 0.0, Grading { ratio: 20.0, even: 6.0 });
+        let parts: Vec<f64> = at.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let shortest = parts[10];
+        for (part, from) in parts.iter().zip(&at) {
+            let nearest = from.abs().min((from + part).abs());
+            let farthest = from.abs().max((from + part).abs());
+            match nearest {
+                _ if farthest <= 6.0 => assert!((part - shortest).abs() < 1e-12, "{parts:?}"),
+                // Between the lengths that parts have at both its ends.
+                _ => {
+                    let there = |far: f64| shortest * (1.0 + 19.0 / 34.0 * (far - 6.0).max(0.0));
+                    assert!((there(nearest)..=there(farthest)).contains(part), "{parts:?}");
+                }
+            }
+        }
+        assert_eq!((at[0], at[20]), (-40.0, 40.0));
     }
 }

@@ -8,7 +8,7 @@ mod rod;
 #[cfg(test)]
 mod tests;
 
-pub use block::{block, graded_block};
+pub use block::{Grading, block, graded_block};
 pub use check::{LEAST_TETRAHEDRON_QUALITY, SolidFault};
 pub use rod::rod;
 

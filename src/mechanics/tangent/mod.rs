@@ -126,11 +126,16 @@ impl Tangent {
         }
     }
 
-    /// Solves in place for [`LANES`] right sides of one cell with its factor.
+    /// Solves in place for [`LANES`] right sides of one cell with its factor, or for several times as many, one set after the other.
     pub fn solve_columns(&self, factor: &[f64], values: &mut [f64]) {
+        let rows = 3 * self.pattern.atoms();
         match self.panels(factor) {
-            Some((fronts, factor)) => dispatch(LANES, SolveMany { fronts, factor, values }),
-            None => dispatch(LANES, SolveColumns { pattern: &self.pattern, factor, values }),
+            Some((fronts, factor)) => dispatch(LANES, SolveMany { fronts, factor, rows, values }),
+            None => {
+                for values in values.chunks_exact_mut(rows * LANES) {
+                    dispatch(LANES, SolveColumns { pattern: &self.pattern, factor, values });
+                }
+            }
         }
     }
 }

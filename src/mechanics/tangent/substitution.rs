@@ -74,10 +74,13 @@ fn scatter(front: &Front, strip: usize, own: &[f64; WIDTH], values: &mut [f64]) 
     }
 }
 
-/// Solves for as many right sides as there are lanes, `values[number][lane]`.
+/// Solves for as many right sides as there are lanes, or several times as many, one set after the other, `values[set][number][lane]`. Each group of rows is
+/// read once for all of them: a large factor does not fit into the caches, and its way from memory takes longer than what is done with it.
 pub struct SolveMany<'a> {
     pub fronts: &'a Fronts,
     pub factor: &'a [f64],
+    /// The numbers of a set, over those of a register.
+    pub rows: usize,
     pub values: &'a mut [f64],
 }
 
@@ -85,63 +88,80 @@ impl BlockWork for SolveMany<'_> {
     type Output = ();
     #[inline(always)]
     fn run<T: Real>(self, token: T::Token, stride: usize) {
-        let Self { fronts, factor, values } = self;
+        let Self { fronts, factor, rows, values } = self;
         let values = T::view_mut(token, values);
-        for part in 0..stride {
-            let mut sides = Sides::<T> { token, values: &mut *values, stride, part };
-            for front in &fronts.fronts {
-                // A force on a few atoms has nothing to say to most groups on the way up.
-                if sides.are_zero(front) {
-                    continue;
-                }
-                let panel = &factor[front.panel..][..front.panel_len()];
-                for strip in 0..front.strips[0] + front.strips[1] {
-                    let tiles = strip.min(front.strips[0]);
-                    let mut own = sides.get(front, strip);
-                    let (before, rest) = panel[front.strip(strip)..].split_at(tiles * TILE);
-                    for (tile, number) in before.chunks_exact(TILE).zip(0..) {
-                        let known = sides.get(front, number);
-                        for c in 0..WIDTH {
-                            for row in 0..WIDTH {
-                                own[row] -= known[c] * tile[c * WIDTH + row];
-                            }
-                        }
+        for front in &fronts.fronts {
+            let panel = &factor[front.panel..][..front.panel_len()];
+            for values in values.chunks_exact_mut(rows * stride) {
+                for part in 0..stride {
+                    let mut sides = Sides::<T> { token, values: &mut *values, stride, part };
+                    // A force on a few atoms has nothing to say to most groups on the way up.
+                    if !sides.are_zero(front) {
+                        forward(front, panel, &mut sides);
                     }
-                    if strip < front.strips[0] {
-                        for c in 0..WIDTH {
-                            own[c] = own[c] * rest[c * WIDTH + c];
-                            for row in c + 1..WIDTH {
-                                own[row] -= own[c] * rest[c * WIDTH + row];
-                            }
-                        }
-                    }
-                    sides.set(front, strip, own);
-                }
-            }
-            for front in fronts.fronts.iter().rev() {
-                let panel = &factor[front.panel..][..front.panel_len()];
-                for column in (0..front.strips[0]).rev() {
-                    let mut own = sides.get(front, column);
-                    for strip in column + 1..front.strips[0] + front.strips[1] {
-                        let tile = &panel[front.strip(strip) + column * TILE..][..TILE];
-                        let known = sides.get(front, strip);
-                        for c in 0..WIDTH {
-                            for row in 0..WIDTH {
-                                own[c] -= known[row] * tile[c * WIDTH + row];
-                            }
-                        }
-                    }
-                    let tile = &panel[front.strip(column) + column * TILE..][..TILE];
-                    for c in (0..WIDTH).rev() {
-                        for row in c + 1..WIDTH {
-                            own[c] -= own[row] * tile[c * WIDTH + row];
-                        }
-                        own[c] = own[c] * tile[c * WIDTH + c];
-                    }
-                    sides.set(front, column, own);
                 }
             }
         }
+        for front in fronts.fronts.iter().rev() {
+            let panel = &factor[front.panel..][..front.panel_len()];
+            for values in values.chunks_exact_mut(rows * stride) {
+                for part in 0..stride {
+                    backward(front, panel, &mut Sides::<T> { token, values: &mut *values, stride, part });
+                }
+            }
+        }
+    }
+}
+
+/// What the own rows of a front tell all its rows.
+#[inline(always)]
+fn forward<T: Real>(front: &Front, panel: &[f64], sides: &mut Sides<T>) {
+    for strip in 0..front.strips[0] + front.strips[1] {
+        let tiles = strip.min(front.strips[0]);
+        let mut own = sides.get(front, strip);
+        let (before, rest) = panel[front.strip(strip)..].split_at(tiles * TILE);
+        for (tile, number) in before.chunks_exact(TILE).zip(0..) {
+            let known = sides.get(front, number);
+            for c in 0..WIDTH {
+                for row in 0..WIDTH {
+                    own[row] -= known[c] * tile[c * WIDTH + row];
+                }
+            }
+        }
+        if strip < front.strips[0] {
+            for c in 0..WIDTH {
+                own[c] = own[c] * rest[c * WIDTH + c];
+                for row in c + 1..WIDTH {
+                    own[row] -= own[c] * rest[c * WIDTH + row];
+                }
+            }
+        }
+        sides.set(front, strip, own);
+    }
+}
+
+/// What all rows of a front tell its own.
+#[inline(always)]
+fn backward<T: Real>(front: &Front, panel: &[f64], sides: &mut Sides<T>) {
+    for column in (0..front.strips[0]).rev() {
+        let mut own = sides.get(front, column);
+        for strip in column + 1..front.strips[0] + front.strips[1] {
+            let tile = &panel[front.strip(strip) + column * TILE..][..TILE];
+            let known = sides.get(front, strip);
+            for c in 0..WIDTH {
+                for row in 0..WIDTH {
+                    own[c] -= known[row] * tile[c * WIDTH + row];
+                }
+            }
+        }
+        let tile = &panel[front.strip(column) + column * TILE..][..TILE];
+        for c in (0..WIDTH).rev() {
+            for row in c + 1..WIDTH {
+                own[c] -= own[row] * tile[c * WIDTH + row];
+            }
+            own[c] = own[c] * tile[c * WIDTH + c];
+        }
+        sides.set(front, column, own);
     }
 }
 

@@ -257,6 +257,15 @@ fn fronts_solve_what_columns_solve() {
     let mut together: Vec<f64> =
         (0..x.len()).flat_map(|at| (0..LANES).map(move |lane| (at, lane))).map(|(at, lane)| side(lane)[at]).collect();
     by_fronts.solve_columns(&fronts, &mut together);
+    // Two sets after each other, the first of them on a single atom: each as alone.
+    for (tangent, factor) in [(&by_fronts, &fronts), (&by_columns, &columns)] {
+        let mut one: Vec<f64> = (0..x.len() * LANES).map(|at| if at < 3 * LANES { at as f64 } else { 0.0 }).collect();
+        let mut other: Vec<f64> = (0..x.len() * LANES).map(|at| ((at * 7) % 23) as f64).collect();
+        let mut both = [one.as_slice(), &other].concat();
+        [&mut one, &mut other].map(|alone| tangent.solve_columns(factor, alone));
+        tangent.solve_columns(factor, &mut both);
+        assert_eq!(both, [one, other].concat());
+    }
     for lane in 0..LANES {
         let [mut expected, mut found] = [side(lane), side(lane)];
         by_columns.solve(1, &columns, &mut expected);

@@ -1,7 +1,8 @@
 //! How contacts move cells that have a stiffness of their own: by columns of what the implicit step makes of a force, eq. (adhesion.21).
 //!
 //! Each side of a row has the displacement of all atoms of its cell by a unit force along the row's normal, or along x, y and z where the
-//! row bears shear.
+//! row bears shear. Where more rows touch a cell than it has atoms that they touch, those are put together from the answers to unit forces on
+//! each of these atoms.
 
 use std::ops::Range;
 
@@ -20,7 +21,10 @@ pub struct Columns {
     /// Rows and sides, cell by cell, and where those of each cell begin.
     pub(super) sides: Vec<(u32, u32)>,
     pub(super) first_side: Vec<u32>,
-    /// Where the columns of each cell begin, of all numbers.
+    /// Atoms that rows touch, of cells that are asked for the answer of each, and where those of each cell begin.
+    touched: Vec<u32>,
+    first_touched: Vec<u32>,
+    /// Where the columns of each cell begin, of all numbers: that of its volume, those of rows, and the answers of atoms.
     first_value: Vec<usize>,
     /// Displacement of an atom over force, µm/pN, or over pressure, µm³/pN.
     pub(super) values: Vec<V4>,
@@ -97,6 +101,19 @@ fn corners(row: &Row, side: usize, is_alone: bool) -> Range<usize> {
     }
 }
 
+/// Sorts a list from an item on, and keeps each of these once.
+fn keep_each_once(list: &mut Vec<u32>, first: usize) {
+    list[first..].sort_unstable();
+    let mut end = first;
+    for at in first..list.len() {
+        if at == first || list[at] != list[end - 1] {
+            list[end] = list[at];
+            end += 1;
+        }
+    }
+    list.truncate(end);
+}
+
 impl Columns {
     /// Begins a projection in which the cells of some kinds move by columns.
     pub fn begin(&mut self, of_kind: impl Iterator<Item = bool>) {
@@ -134,7 +151,7 @@ impl Columns {
         bodies: usize,
         of: impl Fn(u32) -> Counted,
     ) {
-        let Self { of_kind, spans, sides, first_side, first_value, values } = self;
+        let Self { of_kind, spans, sides, first_side, touched, first_touched, first_value, values } = self;
         first_side.clear();
         first_side.resize(bodies + 2, 0);
         let sides_of = |row: &Row| {
@@ -161,14 +178,19 @@ impl Columns {
             }
         }
         spans.resize(rows.len(), Default::default());
+        first_touched.clear();
+        touched.clear();
         first_value.clear();
         let mut end = 0;
         for body in 0..bodies {
             first_value.push(end);
+            let first_of_touched = touched.len();
+            first_touched.push(first_of_touched as u32);
             let Counted { kind, first_atom, atoms, keeps_volume } = of(body as u32);
             if of_kind[kind] && keeps_volume {
                 end += atoms as usize;
             }
+            let mut of_rows = 0;
             for &(row, side) in &sides[first_side[body] as usize..first_side[body + 1] as usize] {
                 let row_bodies = bodies_of(&rows[row as usize]);
                 let corners = corners(&rows[row as usize], side as usize, row_bodies[0] == row_bodies[1]);
@@ -181,8 +203,18 @@ impl Columns {
                     corners: [corners.start as u8, corners.end as u8],
                 };
                 end += columns * atoms as usize;
+                of_rows += columns;
+                touched.extend(corners.map(|corner| rows[row as usize].atoms[corner]));
+            }
+            keep_each_once(touched, first_of_touched);
+            let of_atoms = 3 * (touched.len() - first_of_touched);
+            if of_atoms < of_rows {
+                end += of_atoms * atoms as usize;
+            } else {
+                touched.truncate(first_of_touched);
             }
         }
+        first_touched.push(touched.len() as u32);
         first_value.push(end);
         values.resize(end, [0.0; 4]);
     }
@@ -191,6 +223,11 @@ impl Columns {
     pub(super) fn of_body(&self, body: usize) -> (Range<usize>, Range<usize>) {
         let sides = self.first_side[body] as usize..self.first_side[body + 1] as usize;
         (sides, self.first_value[body]..self.first_value[body + 1])
+    }
+
+    /// The atoms of a cell that are asked for the answer of each, in their order; none where each row is asked.
+    pub(super) fn touched_of(&self, body: usize) -> &[u32] {
+        &self.touched[self.first_touched[body] as usize..self.first_touched[body + 1] as usize]
     }
 
     /// Where the column of the volume of a cell begins, if it moves by columns.

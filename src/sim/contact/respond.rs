@@ -10,7 +10,8 @@ use super::rows::Row;
 use super::scene::ContactScene;
 use super::scratch::ContactScratch;
 use super::together::Together;
-use super::vectors::V4;
+use super::vectors::{V4, map};
+use crate::Vec3;
 use crate::mechanics::integrator::{Method, Order};
 use crate::mechanics::lanes::LANES;
 use crate::mechanics::tangent::Tangent;
@@ -21,7 +22,7 @@ use crate::sim::pressure::pressure;
 use crate::sim::scheme::gamma;
 use crate::sim::solver::{System, solve_block};
 use crate::sim::state::{KindState, State, index};
-use crate::sim::thread_buffers::ThreadBuffers;
+use crate::sim::thread_buffers::{SETS, ThreadBuffers};
 use crate::sim::workspace::KindScratch;
 
 /// Finds the columns of all rows and volumes of cells that move by them.
@@ -66,8 +67,8 @@ pub fn find_columns(
             let own = unsafe { together.part(own) };
             if !own.is_empty() {
                 let first_atom = contact.scene.bodies[first + cell].first_atom;
-                buffers.enter_with_factor(3 * kind.atoms() * LANES, |arrays, factor| {
-                    part.solve((cell, first_atom), (columns, sides), own, arrays, factor);
+                buffers.enter_with_factor(3 * kind.atoms() * LANES * SETS, |arrays, factor| {
+                    part.solve((cell, first + cell, first_atom), (columns, sides), own, arrays, factor);
                 });
             }
         });
@@ -115,7 +116,7 @@ impl OfKind<'_> {
     /// Finds the columns of a cell.
     fn solve(
         &self,
-        (cell, first_atom): (usize, u32),
+        (cell, body, first_atom): (usize, usize, u32),
         (columns, sides): (&Columns, Range<usize>),
         values: &mut [V4],
         [x, y, first, spare, spare2, of_volume]: [&mut [f64]; 6],
@@ -141,17 +142,23 @@ impl OfKind<'_> {
             volume = Some(Swelling { gradient, swell, swelling, target: self.w.target[cell] });
         }
         take_cell(kind, &self.now.positions, cell, LANES, x);
+        let x = &x[..size * LANES];
+        let touched = columns.touched_of(body);
+        let (values, answers) = values.split_at_mut(values.len() - 3 * touched.len() * kind.atoms());
         let mut ends = values.chunks_exact_mut(kind.atoms());
         if let (VolumeRule::Exact(_), Some(Swelling { swell, .. })) = (&kind.volume, &volume) {
             let to = ends.next().into_iter().flatten();
             to.zip(swell.chunks_exact(3)).for_each(|(to, by)| *to = [by[0], by[1], by[2], 0.0]);
         }
-        let mut flush = |y: &mut [f64]| {
+        let mut solve = |y: &mut [f64]| {
+            let [first, spare] = [&mut *first, &mut *spare].map(|array| &mut array[..y.len()]);
             self.answer(&system, volume.as_ref(), x, y, spare, spare2);
             if self.order == Order::Second {
                 first.copy_from_slice(y);
                 // Of the drag and of what is viscous.
-                kind.add_resistance(LANES, 1.0 / kind.drag, [x, y], first);
+                for (y, first) in y.chunks_exact(x.len()).zip(first.chunks_exact_mut(x.len())) {
+                    kind.add_resistance(LANES, 1.0 / kind.drag, [x, y], first);
+                }
                 self.answer(&system, volume.as_ref(), x, first, spare, spare2);
                 let back = 0.5 / system.mobility();
                 y.iter_mut().zip(&*first).for_each(|(y, first)| *y = 1.5 * *y - back * first);
@@ -161,25 +168,28 @@ impl OfKind<'_> {
             let (row, corners) = (&self.rows[row as usize], columns.corners_of(row as usize, side as usize));
             (0..directions(row)).map(move |number| (row, corners.clone(), direction(row, number)))
         });
-        let mut filled = 0;
-        y.fill(0.0);
-        for (row, corners, direction) in all {
-            let weights = row.weights();
-            for corner in corners {
-                let at = 3 * (row.atoms[corner] - first_atom) as usize;
-                (0..3).for_each(|axis| y[(at + axis) * LANES + filled] += weights[corner] * direction[axis]);
-            }
-            filled += 1;
-            if filled == LANES {
-                flush(y);
-                write(&mut ends, y, filled);
-                filled = 0;
-                y.fill(0.0);
-            }
+        if touched.is_empty() {
+            let forces = all.map(|(row, corners, direction)| {
+                let weights = row.weights();
+                corners.map(move |corner| ((row.atoms[corner] - first_atom) as usize, weights[corner] * direction))
+            });
+            solve_all(forces, y, &mut solve, ends);
+            return;
         }
-        if filled > 0 {
-            flush(y);
-            write(&mut ends, y, filled);
+        let units = touched.iter().flat_map(|atom| (0..3).map(move |axis| (atom - first_atom, Vec3::ith(axis, 1.0))));
+        let units = units.map(|(atom, along)| std::iter::once((atom as usize, along)));
+        solve_all(units, y, &mut solve, answers.chunks_exact_mut(kind.atoms()));
+        for ((row, corners, direction), to) in all.zip(ends) {
+            let weights = row.weights();
+            to.fill([0.0; 4]);
+            for corner in corners {
+                let first = 3 * touched.binary_search(&row.atoms[corner]).expect("each corner is among them");
+                for (axis, along) in direction.iter().enumerate().filter(|(_, along)| **along != 0.0) {
+                    let by = &answers[(first + axis) * kind.atoms()..][..kind.atoms()];
+                    let share = weights[corner] * along;
+                    to.iter_mut().zip(by).for_each(|(to, by)| *to = map(|i| to[i] + share * by[i]));
+                }
+            }
         }
     }
 
@@ -192,7 +202,7 @@ impl OfKind<'_> {
         factor
     }
 
-    /// What a stage of the step makes of forces, volumes kept as the step keeps them, for several right sides.
+    /// What a stage of the step makes of forces, volumes kept as the step keeps them, for some sets of right sides.
     fn answer(
         &self,
         system: &System,
@@ -204,15 +214,17 @@ impl OfKind<'_> {
     ) {
         solve_block(self.kind, LANES, system, x, y, spare, spare2);
         let Some(Swelling { gradient, swell, swelling, target }) = volume else { return };
-        let (y, _) = y.as_chunks_mut::<LANES>();
-        let mut along = [0.0; LANES];
-        for (y, g) in y.iter().zip(*gradient) {
-            (0..LANES).for_each(|lane| along[lane] += g * y[lane]);
-        }
         let gamma = gamma(self.kind, self.order);
-        let pressures = along.map(|along| pressure(self.kind, gamma, along, *swelling, 0.0, *target));
-        for (y, s) in y.iter_mut().zip(*swell) {
-            (0..LANES).for_each(|lane| y[lane] += pressures[lane] * s);
+        for set in y.chunks_exact_mut(x.len()) {
+            let (y, _) = set.as_chunks_mut::<LANES>();
+            let mut along = [0.0; LANES];
+            for (y, g) in y.iter().zip(*gradient) {
+                (0..LANES).for_each(|lane| along[lane] += g * y[lane]);
+            }
+            let pressures = along.map(|along| pressure(self.kind, gamma, along, *swelling, 0.0, *target));
+            for (y, s) in y.iter_mut().zip(*swell) {
+                (0..LANES).for_each(|lane| y[lane] += pressures[lane] * s);
+            }
         }
     }
 }
@@ -223,11 +235,32 @@ fn take_cell(kind: &Kind, values: &[f64], cell: usize, copies: usize, to: &mut [
     to.chunks_exact_mut(copies).zip(from).take(3 * kind.atoms()).for_each(|(to, from)| to.fill(*from));
 }
 
-/// Writes the first columns of a block of right sides.
-fn write(ends: &mut std::slice::ChunksExactMut<V4>, y: &[f64], columns: usize) {
-    for (lane, to) in (0..columns).zip(ends) {
-        for (to, from) in to.iter_mut().zip(y.chunks_exact(3 * LANES)) {
-            *to = [from[lane], from[LANES + lane], from[2 * LANES + lane], 0.0];
+/// Finds what forces on some atoms make, several at once, and writes it, a column for each.
+fn solve_all(
+    forces: impl Iterator<Item = impl Iterator<Item = (usize, Vec3)>>,
+    y: &mut [f64],
+    solve: &mut impl FnMut(&mut [f64]),
+    mut ends: std::slice::ChunksExactMut<V4>,
+) {
+    let mut forces = forces.peekable();
+    let set = y.len() / SETS;
+    while forces.peek().is_some() {
+        y.fill(0.0);
+        let mut filled = 0;
+        for parts in forces.by_ref().take(SETS * LANES) {
+            let y = &mut y[filled / LANES * set..][..set];
+            for (atom, force) in parts {
+                (0..3).for_each(|axis| y[(3 * atom + axis) * LANES + filled % LANES] += force[axis]);
+            }
+            filled += 1;
+        }
+        let y = &mut y[..filled.div_ceil(LANES) * set];
+        solve(y);
+        for (number, to) in (0..filled).zip(&mut ends) {
+            let (lane, y) = (number % LANES, &y[number / LANES * set..][..set]);
+            for (to, from) in to.iter_mut().zip(y.chunks_exact(3 * LANES)) {
+                *to = [from[lane], from[LANES + lane], from[2 * LANES + lane], 0.0];
+            }
         }
     }
 }
