@@ -161,7 +161,7 @@ fn doubled_area_vector(surface: &Surface, facet: [u32; 3]) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::{Topology, box_surface, icosphere, sheet, translate};
+    use crate::geometry::{Topology, box_surface, grade_sphere, icosphere, sheet, translate};
     use std::f64::consts::PI;
 
     #[test]
@@ -176,6 +176,16 @@ mod tests {
         assert!((centre_of_volume(&surface) - Vec3::new(1e3, -2e3, 7.0)).norm() < 1e-10);
         let (low, high) = bounding_box(&surface.positions).unwrap();
         assert!((high - low - Vec3::new(2.0, 3.0, 5.0)).norm() < 1e-10);
+    }
+
+    #[test]
+    fn a_mesh_is_finest_where_it_is_made_so() {
+        let mut ball = icosphere(3.0, 3);
+        let mean = mean_edge_length(&ball);
+        assert!((0.8..1.0).contains(&(finest_edge_length(&ball) / mean)));
+        grade_sphere(&mut ball.positions, &Vec3::z(), 9.0);
+        // Edges are a third of what they were there, and three times that opposite.
+        assert!((0.8..1.1).contains(&(3.0 * finest_edge_length(&ball) / mean)), "{}", finest_edge_length(&ball) / mean);
     }
 
     #[test]
@@ -242,6 +252,7 @@ mod tests {
     fn an_empty_surface_measures_nothing() {
         let nothing = Surface::default();
         assert_eq!((volume(&nothing), area(&nothing), mean_edge_length(&nothing)), (0.0, 0.0, 0.0));
+        assert_eq!(finest_edge_length(&nothing), 0.0);
         assert_eq!(centre_of_volume(&nothing), Vec3::zeros());
         assert!(bounding_box(&[]).is_none());
     }

@@ -150,7 +150,7 @@ fn a_gel_that_a_cell_pulls_at_moves_as_a_half_space() {
 }
 
 #[test]
-#[ignore = "slow: fifteen minutes; cargo test --release --test figures a_finer_gel -- --ignored"]
+#[ignore = "slow: twelve minutes; cargo test --release --test figures a_finer_gel -- --ignored"]
 fn a_finer_gel_moves_more_as_a_half_space() {
     experiment_keeps_its_word("traction_gel", "fine.toml");
 }
