@@ -179,18 +179,7 @@ impl OfKind<'_> {
         let units = touched.iter().flat_map(|atom| (0..3).map(move |axis| (atom - first_atom, Vec3::ith(axis, 1.0))));
         let units = units.map(|(atom, along)| std::iter::once((atom as usize, along)));
         solve_all(units, y, &mut solve, answers.chunks_exact_mut(kind.atoms()));
-        for ((row, corners, direction), to) in all.zip(ends) {
-            let weights = row.weights();
-            to.fill([0.0; 4]);
-            for corner in corners {
-                let first = 3 * touched.binary_search(&row.atoms[corner]).expect("each corner is among them");
-                for (axis, along) in direction.iter().enumerate().filter(|(_, along)| **along != 0.0) {
-                    let by = &answers[(first + axis) * kind.atoms()..][..kind.atoms()];
-                    let share = weights[corner] * along;
-                    to.iter_mut().zip(by).for_each(|(to, by)| *to = map(|i| to[i] + share * by[i]));
-                }
-            }
-        }
+        put_together(all, (touched, answers), ends);
     }
 
     /// Takes the factor of a cell out of that of its block.
@@ -224,6 +213,26 @@ impl OfKind<'_> {
             let pressures = along.map(|along| pressure(self.kind, gamma, along, *swelling, 0.0, *target));
             for (y, s) in y.iter_mut().zip(*swell) {
                 (0..LANES).for_each(|lane| y[lane] += pressures[lane] * s);
+            }
+        }
+    }
+}
+
+/// Puts columns together from the answers to unit forces along x, y and z on the atoms that are touched.
+fn put_together<'a>(
+    forces: impl Iterator<Item = (&'a Row, Range<usize>, Vec3)>,
+    (touched, answers): (&[u32], &[V4]),
+    ends: std::slice::ChunksExactMut<V4>,
+) {
+    let atoms = answers.len() / (3 * touched.len());
+    for ((row, corners, direction), to) in forces.zip(ends) {
+        let weights = row.weights();
+        to.fill([0.0; 4]);
+        for corner in corners {
+            let first = 3 * touched.binary_search(&row.atoms[corner]).expect("each corner is among them");
+            for (axis, along) in direction.iter().enumerate().filter(|(_, along)| **along != 0.0) {
+                let (by, share) = (&answers[(first + axis) * atoms..][..atoms], weights[corner] * along);
+                to.iter_mut().zip(by).for_each(|(to, by)| *to = map(|i| to[i] + share * by[i]));
             }
         }
     }
