@@ -262,7 +262,9 @@ fn fronts_solve_what_columns_solve() {
         let mut one: Vec<f64> = (0..x.len() * LANES).map(|at| if at < 3 * LANES { at as f64 } else { 0.0 }).collect();
         let mut other: Vec<f64> = (0..x.len() * LANES).map(|at| ((at * 7) % 23) as f64).collect();
         let mut both = [one.as_slice(), &other].concat();
-        [&mut one, &mut other].map(|alone| tangent.solve_columns(factor, alone));
+        for alone in [&mut one, &mut other] {
+            tangent.solve_columns(factor, alone);
+        }
         tangent.solve_columns(factor, &mut both);
         assert_eq!(both, [one, other].concat());
     }
