@@ -3,12 +3,15 @@
 use super::gel::Gel;
 use super::half_space::Loaded;
 use crate::Vec3;
-use crate::error::Result;
+use crate::error::{Error, Fault, Result, short};
 use crate::output::ResultFile;
 use std::fmt::Write;
 
 /// Points along an axis when no distance between them is named.
 const POINTS: f64 = 64.0;
+
+/// The most points that a map may have: 2 000 along each axis, as many as a camera has pixels; with its text, of some 150 bytes a point, less than a gigabyte.
+const MOST: f64 = 4e6;
 
 /// How much of a facet a point may be outside of it, for round-off.
 const ROUND_OFF: f64 = 1e-9;
@@ -38,7 +41,8 @@ impl DisplacementMap {
     /// straight lines; where the face has no facet they are 0.
     ///
     /// # Errors
-    /// When there is no such type, not one body of it, or no face of it that looks upwards; a damaged file.
+    /// When there is no such type, not one body of it, or no face of it that looks upwards, or when there would be more than four million points; a
+    /// damaged file.
     pub fn of(file: &ResultFile, name: &str, frame: usize, spacing: Option<f64>) -> Result<Self> {
         let Gel { rest, moved, facets, forces } = Gel::of(file, name, frame, Vec3::z())?;
         let has_tractions = forces.is_some();
@@ -48,6 +52,16 @@ impl DisplacementMap {
         let high = corners().fold(Vec3::repeat(f64::NEG_INFINITY), |high, at| high.sup(&at));
         let size = (high - low).xy();
         let spacing = spacing.unwrap_or(size.max() / POINTS);
+        let asked = (size.x / spacing + 1.0) * (size.y / spacing + 1.0);
+        if asked > MOST {
+            let least = (size.x * size.y / MOST).sqrt();
+            let message = format!(
+                "a point every {} um makes {asked:.1e} of them, and a map has at most {MOST:.0e}",
+                short(spacing)
+            );
+            let fault = Fault::new(message).help(format!("take a longer spacing, above {} um", short(least)));
+            return Err(Error::input(fault));
+        }
         let along = |axis: usize| (size[axis] / spacing * (1.0 + ROUND_OFF)).floor() as usize;
         let (columns, rows) = (along(0), along(1));
         let at = |column: usize, row: usize| [low.x + column as f64 * spacing, low.y + row as f64 * spacing];

@@ -36,9 +36,9 @@ impl Gel {
             let fault = Fault::new(format!("there is no type \"{name}\""));
             return Err(Error::input(fault.help(format!("types are {}", all_of(names.iter().map(String::as_str))))));
         };
-        let mut bodies = (0..cells.len()).filter(|number| cells[*number].kind as usize == kind);
-        let (Some(number), None) = (bodies.next(), bodies.next()) else {
-            let fault = Fault::new(format!("there is not one body of the type \"{name}\""));
+        let bodies: Vec<usize> = (0..cells.len()).filter(|number| cells[*number].kind as usize == kind).collect();
+        let [number] = bodies[..] else {
+            let fault = Fault::new(format!("there are {} bodies of the type \"{name}\" in that frame", bodies.len()));
             return Err(Error::input(fault.help("name a type of which there is one, the gel")));
         };
         let first = file.cells(0);

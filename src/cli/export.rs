@@ -13,7 +13,7 @@ use crate::Vec3;
 use crate::analysis::aggregates::table_of_changes;
 use crate::analysis::displacement_map::DisplacementMap;
 use crate::error::words::all_of;
-use crate::error::{Error, Fault, Result};
+use crate::error::{Error, Fault, Result, short};
 use crate::experiment::When;
 use crate::geometry::{Surface, export_surface};
 use crate::output::biotracks::write_biotracks;
@@ -144,9 +144,10 @@ fn map_of(args: &ExportArgs, result: &ResultFile, output: &Path) -> Result<Strin
     let pixel = args.pixel.map_or(map.spacing / PIXELS, |pixel| pixel.value());
     let pixels = map.spacing / pixel;
     if pixels < 1.0 - ROUND_OFF || (pixels - pixels.round()).abs() > ROUND_OFF * pixels {
-        let message = format!("a spacing of {} um is {pixels} pixels of {pixel} um", map.spacing);
-        let fault = Fault::new(message).help("give a spacing of a whole number of pixels: both --spacing and --pixel");
-        return Err(Error::input(fault));
+        let (spacing, whole) = (short(map.spacing), pixels.round().max(1.0) * pixel);
+        let message = format!("a spacing of {spacing} um is {} pixels of {} um", short(pixels), short(pixel));
+        let help = format!("give a spacing of a whole number of pixels, such as --spacing \"{} um\"", short(whole));
+        return Err(Error::input(Fault::new(message).help(help)));
     }
     Ok(map.in_pixels(pixel))
 }

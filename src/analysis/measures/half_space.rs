@@ -83,7 +83,6 @@ impl HalfSpace {
             Error::input(fault.help("add `tractions = true` to [output] of its document and run it again"))
         })?;
         let recording = run.recording;
-        recording.cells_of(Some(&self.cells))?;
         let normal = Vec3::from(self.normal).normalize();
         let Gel { rest, moved, facets, forces } = Gel::of(file, &self.cells, recording.frame_at(self.time), normal)?;
         let half_space = half_space::HalfSpace { young: self.young.value(), poisson: self.poisson, normal };

@@ -147,7 +147,7 @@ fn columns_are_what_the_step_makes_of_a_force_and_symmetric_and_positive() {
         let largest = matrix.amax();
         assert!((&matrix - matrix.transpose()).amax() < 1e-6 * largest, "symmetric");
         let least = SymmetricEigen::new(0.5 * (&matrix + matrix.transpose())).eigenvalues.min();
-        // More rows than motions of their atoms have combinations that move nothing.
+        // More rows than motions of their atoms have combinations that move nothing, but for round-off.
         assert!(if is_crowded { least > -1e-12 * largest } else { least > 0.0 }, "positive: {least}");
         for (number, row) in rows.iter().enumerate() {
             let [along, across] = columns.response(number, row);
