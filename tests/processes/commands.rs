@@ -73,7 +73,8 @@ exit 2
   × --field has no meaning for a.obj
   help: --frame and --time belong to one frame of a mesh (.obj, .ply, .stl, .vtu, .pml) or of a field
         (.vti, .ome.tiff, or .csv with --field), --every to all frames (.pvd, .ome.tiff), --cell to a mesh,
-        --field to a field, --table and --series to a table (.csv)
+        --field to a field, --table and --series to a table (.csv), --displacements to a map (.csv, .txt),
+        --pixel to one in pixels (.txt)
 
 1 fault
 exit 2
