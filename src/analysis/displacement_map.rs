@@ -1,20 +1,15 @@
 //! How the face of a gel has moved under cells, on a regular grid, as programs for traction force microscopy read it.
 
+use super::face_grid::FaceGrid;
 use super::gel::Gel;
 use super::half_space::Loaded;
 use crate::Vec3;
-use crate::error::{Error, Fault, Result, short};
+use crate::error::Result;
 use crate::output::ResultFile;
 use std::fmt::Write;
 
 /// Points along an axis when no distance between them is named.
 const POINTS: f64 = 64.0;
-
-/// The most points that a map may have: 2 000 along each axis, as many as a camera has pixels; with its text, of some 150 bytes a point, less than a gigabyte.
-const MOST: f64 = 4e6;
-
-/// How much of a facet a point may be outside of it, for round-off.
-const ROUND_OFF: f64 = 1e-9;
 
 /// The displacements of a flat face that looks upwards at the points of a grid.
 pub struct DisplacementMap {
@@ -47,48 +42,19 @@ impl DisplacementMap {
         let Gel { rest, moved, facets, forces } = Gel::of(file, name, frame, Vec3::z())?;
         let has_tractions = forces.is_some();
         let forces = forces.unwrap_or_else(|| vec![Vec3::zeros(); rest.len()]);
-        let corners = || facets.iter().flatten().map(|corner| rest[*corner]);
-        let low = corners().fold(Vec3::repeat(f64::INFINITY), |low, at| low.inf(&at));
-        let high = corners().fold(Vec3::repeat(f64::NEG_INFINITY), |high, at| high.sup(&at));
-        let size = (high - low).xy();
-        let spacing = spacing.unwrap_or(size.max() / POINTS);
-        let asked = (size.x / spacing + 1.0) * (size.y / spacing + 1.0);
-        if asked > MOST {
-            let least = (size.x * size.y / MOST).sqrt();
-            let message = format!(
-                "a point every {} um makes {asked:.1e} of them, and a map has at most {MOST:.0e}",
-                short(spacing)
-            );
-            let fault = Fault::new(message).help(format!("take a longer spacing, above {} um", short(least)));
-            return Err(Error::input(fault));
-        }
-        let along = |axis: usize| (size[axis] / spacing * (1.0 + ROUND_OFF)).floor() as usize;
-        let (columns, rows) = (along(0), along(1));
-        let at = |column: usize, row: usize| [low.x + column as f64 * spacing, low.y + row as f64 * spacing];
-        let all = (0..=rows).flat_map(|row| (0..=columns).map(move |column| (column, row)));
-        let mut points: Vec<Point> = all
-            .map(|(column, row)| Point { at: at(column, row), moved: Vec3::zeros(), traction: Vec3::zeros() })
-            .collect();
+        let grid = FaceGrid::over(&rest, &facets, [Vec3::x(), Vec3::y()], |size| spacing.unwrap_or(size / POINTS))
+            .map_err(|fine| fine.fault("spacing", 1.0))?;
+        let still = |at: Vec3| Point { at: [at.x, at.y], moved: Vec3::zeros(), traction: Vec3::zeros() };
+        let mut points: Vec<Point> = grid.all().map(still).collect();
         let loaded = Loaded::by_forces(rest, facets, &forces);
         for facet in &loaded.facets {
-            let [a, b, c] = facet.map(|corner| loaded.points[corner].xy() - low.xy());
-            let reach = |axis: usize, last: usize| {
-                let (least, most) = (a[axis].min(b[axis]).min(c[axis]), a[axis].max(b[axis]).max(c[axis]));
-                let first = (least / spacing - ROUND_OFF).ceil().max(0.0) as usize;
-                first..=((most / spacing + ROUND_OFF).floor() as usize).min(last)
-            };
-            let twice_area = (b - a).perp(&(c - a));
-            for (column, row) in reach(1, rows).flat_map(|row| reach(0, columns).map(move |column| (column, row))) {
-                let p = nalgebra::Vector2::new(column as f64, row as f64) * spacing - a;
-                let (of_b, of_c) = (p.perp(&(c - a)) / twice_area, (b - a).perp(&p) / twice_area);
-                let shares = [1.0 - of_b - of_c, of_b, of_c];
-                if shares.iter().all(|share| *share > -ROUND_OFF) {
-                    let between = |values: &[Vec3]| (0..3).map(|corner| shares[corner] * values[facet[corner]]).sum();
-                    let point = &mut points[row * (columns + 1) + column];
-                    (point.moved, point.traction) = (between(&moved), between(&loaded.tractions));
-                }
-            }
+            grid.each_on(facet.map(|corner| loaded.points[corner]), |number, shares| {
+                let between = |values: &[Vec3]| (0..3).map(|corner| shares[corner] * values[facet[corner]]).sum();
+                let point = &mut points[number];
+                (point.moved, point.traction) = (between(&moved), between(&loaded.tractions));
+            });
         }
+        let spacing = grid.spacing;
         Ok(Self { spacing, points, has_tractions })
     }
 

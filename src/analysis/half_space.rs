@@ -4,11 +4,11 @@
 use crate::Vec3;
 use std::f64::consts::PI;
 
-/// Facets whose middle is nearer than this many times their longest edge are cut into four, again and again, before their tractions are summed.
+/// Facets whose middle is nearer than this many times their longest edge are summed exactly but for the rule of Gauss, others by the middles of their edges.
 const NEAR: f64 = 3.0;
 
-/// How often at most.
-const CUTS: usize = 4;
+/// Points that are nearer to the line of an edge than this, over its length, are on it: the wedge between them has no area.
+const ON_IT: f64 = 1e-12;
 
 /// Points and weights of the rule of Gauss with eight points on 0 to 1: one half of them, the others mirror it.
 const GAUSS: [[f64; 2]; 4] = [
@@ -63,21 +63,27 @@ impl Loaded {
         Self { points, facets, tractions }
     }
 
-    /// How far the half space that it is the surface of moves at one of the points, µm: the sum of (traction.5) over the surface.
-    pub fn moved(&self, half_space: &HalfSpace, point: usize) -> Vec3 {
-        let at = self.points[point];
+    /// How far the half space that it is the surface of moves at a point of the surface, µm: the sum of (traction.5) over it.
+    pub fn moved(&self, half_space: &HalfSpace, at: Vec3) -> Vec3 {
         let loaded =
             self.facets.iter().filter(|facet| facet.iter().any(|corner| self.tractions[*corner] != Vec3::zeros()));
         loaded
             .map(|facet| {
-                let corners = facet.map(|corner| (self.points[corner], self.tractions[corner]));
-                match facet.iter().position(|corner| *corner == point) {
-                    Some(first) => from_corner(half_space, [0, 1, 2].map(|k| corners[(first + k) % 3])),
-                    None => from_beside(half_space, at, corners, CUTS),
-                }
+                let corners = facet.map(|corner| Corner { at: self.points[corner], traction: self.tractions[corner] });
+                let [a, b, c] = corners.map(|corner| corner.at);
+                let longest = (b - a).norm().max((c - b).norm()).max((a - c).norm());
+                let is_near = ((a + b + c) / 3.0 - at).norm() < NEAR * longest;
+                if is_near { from_near(half_space, at, corners) } else { from_far(half_space, at, corners) }
             })
             .sum()
     }
+}
+
+/// A corner of a facet, or another point in its plane.
+#[derive(Clone, Copy)]
+struct Corner {
+    at: Vec3,
+    traction: Vec3,
 }
 
 /// A third of the area of all facets around each point, µm².
@@ -95,38 +101,56 @@ fn gauss() -> impl Iterator<Item = [f64; 2]> {
     GAUSS.into_iter().flat_map(|[at, weight]| [[at, weight], [1.0 - at, weight]])
 }
 
-/// What the tractions of a facet move its first corner. With y = a + s ((1 − t) (b − a) + t (c − a)) the area is 2 A s ds dt, which takes away what is
-/// singular; along s the traction is linear.
-fn from_corner(half_space: &HalfSpace, [(a, first), (b, second), (c, third)]: [(Vec3, Vec3); 3]) -> Vec3 {
-    let twice_area = (b - a).cross(&(c - a)).norm();
-    let along = |[t, weight]: [f64; 2]| {
-        let arm = (1.0 - t) * (b - a) + t * (c - a);
-        let far = (1.0 - t) * second + t * third;
-        weight / arm.norm() * half_space.moved(-arm.normalize(), 0.5 * (first + far))
-    };
-    twice_area * gauss().map(along).sum::<Vec3>()
+/// What the tractions of a facet move any point in its plane: it is the sum of three wedges from that point to its edges, of which those that are outside
+/// of it count negative, with the tractions that go on along the same plane.
+fn from_near(half_space: &HalfSpace, at: Vec3, corners: [Corner; 3]) -> Vec3 {
+    let [a, b, c] = corners.map(|corner| corner.at);
+    let across = (b - a).cross(&(c - a));
+    let of_b = (at - a).cross(&(c - a)).dot(&across) / across.norm_squared();
+    let of_c = (b - a).cross(&(at - a)).dot(&across) / across.norm_squared();
+    let shares = [1.0 - of_b - of_c, of_b, of_c];
+    let traction = shares.iter().zip(&corners).map(|(share, corner)| *share * corner.traction).sum();
+    let tip = Corner { at, traction };
+    (0..3).map(|k| of_wedge(half_space, across, tip, corners[k], corners[(k + 1) % 3])).sum()
 }
 
-/// What the tractions of a facet move a point that is none of its corners.
-fn from_beside(half_space: &HalfSpace, at: Vec3, corners: [(Vec3, Vec3); 3], cuts: usize) -> Vec3 {
-    let [(a, first), (b, second), (c, third)] = corners;
-    let longest = (b - a).norm().max((c - b).norm()).max((a - c).norm());
-    if cuts > 0 && ((a + b + c) / 3.0 - at).norm() < NEAR * longest {
-        let [ab, bc, ca] = [(0, 1), (1, 2), (2, 0)].map(|(i, j)| {
-            let middle = |k: fn(&(Vec3, Vec3)) -> Vec3| 0.5 * (k(&corners[i]) + k(&corners[j]));
-            (middle(|corner| corner.0), middle(|corner| corner.1))
-        });
-        let parts = [[corners[0], ab, ca], [ab, corners[1], bc], [ca, bc, corners[2]], [ab, bc, ca]];
-        return parts.into_iter().map(|part| from_beside(half_space, at, part, cuts - 1)).sum();
+/// What the tractions in the triangle between a point and an edge move that point, negative where it goes around against `across`.
+///
+/// With y = tip + s ((1 − t) (a − tip) + t (b − tip)) the area is 2 A s ds dt, which takes away what is singular, and along s the traction is linear. What is
+/// left over t has the distance to the edge below it, which may be small: with d from the line of the edge to the tip, t L = d sinh u + that of the foot,
+/// dt over the distance is du/L.
+fn of_wedge(half_space: &HalfSpace, across: Vec3, tip: Corner, a: Corner, b: Corner) -> Vec3 {
+    let edge = b.at - a.at;
+    let length = edge.norm();
+    let along = edge / length;
+    let foot = (tip.at - a.at).dot(&along);
+    let height = tip.at - a.at - foot * along;
+    let distance = height.norm();
+    if distance < ON_IT * length {
+        return Vec3::zeros();
     }
-    // The rule with the middles of the edges, exact for squares.
-    let sixth = (b - a).cross(&(c - a)).norm() / 6.0;
-    let middles = [(a, b, first, second), (b, c, second, third), (c, a, third, first)];
-    let part = |(one, other, left, right): (Vec3, Vec3, Vec3, Vec3)| {
-        let arm = at - 0.5 * (one + other);
-        half_space.moved(arm.normalize(), 0.5 * (left + right)) / arm.norm()
+    let signed = distance * height.dot(&across.cross(&along)).signum();
+    let [from, to] = [-foot, length - foot].map(|end| (end / distance).asinh());
+    let part = |[at, weight]: [f64; 2]| {
+        let beyond = distance * (from + (to - from) * at).sinh();
+        let share = (foot + beyond) / length;
+        let far = (1.0 - share) * a.traction + share * b.traction;
+        let arm = beyond * along - height;
+        weight * half_space.moved(-arm.normalize(), 0.5 * (tip.traction + far))
     };
-    sixth * middles.into_iter().map(part).sum::<Vec3>()
+    signed * (to - from) * gauss().map(part).sum::<Vec3>()
+}
+
+/// What the tractions of a facet move a point that is far from it: the rule with the middles of the edges, exact for squares.
+fn from_far(half_space: &HalfSpace, at: Vec3, corners: [Corner; 3]) -> Vec3 {
+    let [a, b, c] = corners.map(|corner| corner.at);
+    let sixth = (b - a).cross(&(c - a)).norm() / 6.0;
+    let part = |k: usize| {
+        let (one, other) = (corners[k], corners[(k + 1) % 3]);
+        let arm = at - 0.5 * (one.at + other.at);
+        half_space.moved(arm.normalize(), 0.5 * (one.traction + other.traction)) / arm.norm()
+    };
+    sixth * (0..3).map(part).sum::<Vec3>()
 }
 
 #[cfg(test)]
@@ -166,11 +190,11 @@ mod tests {
         // Johnson, Contact Mechanics, (3.29): 2 (1 − ν²) p a / E in the middle, 2/π of it at the rim.
         let (radius, pressure) = (1.5, 0.01);
         let disc = disc(radius, Vec3::new(0.0, 0.0, -pressure));
-        let middle = disc.moved(&HALF_SPACE, 0);
+        let middle = disc.moved(&HALF_SPACE, Vec3::zeros());
         let expected = 2.0 * (1.0 - 0.09) * pressure * radius / 2.0;
         assert!((-middle.z / expected - 1.0).abs() < POLYGON, "{middle} for {expected}");
         assert!(middle.xy().norm() < 1e-12 * expected, "{middle}");
-        let rim = disc.moved(&HALF_SPACE, disc.points.len() - 96);
+        let rim = disc.moved(&HALF_SPACE, disc.points[disc.points.len() - 96]);
         assert!((-rim.z / (expected * 2.0 / PI) - 1.0).abs() < POLYGON, "{rim}");
         // Under a pressure the rim goes inwards by (1 − 2ν)(1 + ν) p a / 2E.
         let inwards = 0.4 * 1.3 * pressure * radius / (2.0 * 2.0);
@@ -182,7 +206,7 @@ mod tests {
         // The mean over directions of (1 − ν) + ν cos² is 1 − ν/2, and that of 1/r over a disc 2/a.
         let (radius, traction) = (1.5, 0.01);
         let disc = disc(radius, Vec3::new(traction, 0.0, 0.0));
-        let middle = disc.moved(&HALF_SPACE, 0);
+        let middle = disc.moved(&HALF_SPACE, Vec3::zeros());
         let expected = 1.3 * (2.0 - 0.3) * traction * radius / 2.0;
         assert!((middle.x / expected - 1.0).abs() < POLYGON, "{middle} for {expected}");
         assert!(middle.yz().norm() < 1e-12 * expected, "{middle}");
@@ -195,10 +219,63 @@ mod tests {
         points.push(Vec3::new(30.0, 40.0, 0.0));
         let mut forces = vec![Vec3::zeros(); points.len()];
         (forces[0], forces[5]) = (Vec3::new(0.2, 0.0, -0.5), Vec3::new(0.1, 0.3, 0.0));
-        let last = points.len() - 1;
-        let far = Loaded::by_forces(points, near.facets, &forces).moved(&HALF_SPACE, last);
+        let far = Loaded::by_forces(points, near.facets, &forces).moved(&HALF_SPACE, Vec3::new(30.0, 40.0, 0.0));
         let expected = HALF_SPACE.moved(Vec3::new(0.6, 0.8, 0.0), Vec3::new(0.3, 0.3, -0.5)) / 50.0;
         assert!((far - expected).norm() < 0.003 * expected.norm(), "{far} for {expected}");
+    }
+
+    /// What a facet moves a point, by many small parts of it, each with its middle.
+    fn by_parts(at: Vec3, corners: [Corner; 3], parts: usize) -> Vec3 {
+        let [a, b, c] = corners;
+        let area = 0.5 * (b.at - a.at).cross(&(c.at - a.at)).norm();
+        let mut sum = Vec3::zeros();
+        for (i, j) in (0..parts).flat_map(|i| (0..parts).map(move |j| (i, j))) {
+            // Of each little parallelogram the half that is near the first corner, and that which is not where it is in the triangle.
+            for (shift, is_in) in [(1.0 / 3.0, i + j < parts), (2.0 / 3.0, i + j + 1 < parts)] {
+                if is_in {
+                    let (u, v) = ((i as f64 + shift) / parts as f64, (j as f64 + shift) / parts as f64);
+                    let arm = at - ((1.0 - u - v) * a.at + u * b.at + v * c.at);
+                    let traction = (1.0 - u - v) * a.traction + u * b.traction + v * c.traction;
+                    sum += HALF_SPACE.moved(arm.normalize(), traction) / arm.norm() * area / (parts * parts) as f64;
+                }
+            }
+        }
+        sum
+    }
+
+    fn facet() -> [Corner; 3] {
+        let corner = |x, y, traction: [f64; 3]| Corner { at: Vec3::new(x, y, 0.0), traction: Vec3::from(traction) };
+        [corner(0.0, 0.0, [0.1, 0.2, -0.3]), corner(1.3, 0.2, [-0.4, 0.3, 0.2]), corner(0.4, 0.9, [0.2, -0.5, 0.6])]
+    }
+
+    #[test]
+    fn a_facet_moves_points_in_and_beside_it_as_many_small_parts_of_it_do() {
+        let points = [(0.5, 0.4), (0.6, 0.02), (1.0, 0.7), (-0.3, -0.1), (2.0, 0.2), (0.0, 3.0)];
+        for at in points.map(|(x, y)| Vec3::new(x, y, 0.0)) {
+            let (found, expected) = (from_near(&HALF_SPACE, at, facet()), by_parts(at, facet(), 1_500));
+            // One part in 1 500 beside the point is what the sum is uncertain by.
+            assert!((found - expected).norm() < 1e-3 * expected.norm(), "{at}: {found} for {expected}");
+        }
+        // Far away both rules agree.
+        let at = Vec3::new(3.0, 3.5, 0.0);
+        let (near, far) = (from_near(&HALF_SPACE, at, facet()), from_far(&HALF_SPACE, at, facet()));
+        assert!((near - far).norm() < 1e-3 * near.norm(), "{near} and {far}");
+    }
+
+    #[test]
+    fn displacements_go_on_across_edges_and_corners() {
+        let [a, b, c] = facet();
+        let on_edge = 0.3 * a.at + 0.7 * b.at;
+        let out = Vec3::new(0.2, -1.3, 0.0).normalize();
+        for at in [on_edge, a.at, b.at, c.at] {
+            let there = from_near(&HALF_SPACE, at, facet());
+            for (off, most) in [(1e-3, 2e-2), (1e-6, 5e-5), (1e-10, 1e-8), (1e-13, 1e-8)] {
+                for side in [-1.0, 1.0] {
+                    let beside = from_near(&HALF_SPACE, at + side * off * out, facet());
+                    assert!((beside - there).norm() < most * there.norm(), "{off}: {beside} for {there}");
+                }
+            }
+        }
     }
 
     #[test]

@@ -7,6 +7,7 @@ pub mod claims;
 mod csv_fields;
 pub mod curve;
 pub mod displacement_map;
+mod face_grid;
 pub mod fields;
 pub mod fronts;
 pub mod furth;

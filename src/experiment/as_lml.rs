@@ -31,6 +31,7 @@ pub fn loads_as_lml(model: &Model, cells: &[(usize, u32)]) -> (Loads, Vec<&'stat
                 Force::Trap(_) => untold.push("traps"),
                 Force::Plate(_) => untold.push("flexible plates"),
                 Force::Pressure(_) => untold.push("pressures along normals"),
+                Force::Torque(_) => untold.push("torques"),
                 _ => {}
             }
         }

@@ -7,6 +7,8 @@ use super::pressure::Pressure;
 use super::rigid::Trap;
 use super::selection::{Linked, Selection};
 use super::semantics::Check;
+use super::torque::Torque;
+use crate::Vec3;
 use crate::geometry;
 use crate::mechanics::fibres::Fibres;
 use crate::mechanics::springs::{Spring, Springs};
@@ -32,6 +34,9 @@ pub struct Applied {
     /// Pressures on some facets, along their normals.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub pressures: Vec<Pressure>,
+    /// Torques on some atoms.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub torques: Vec<Torque>,
     /// Springs that draw the bodies of a rigid type to points.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub traps: Vec<Trap>,
@@ -107,6 +112,27 @@ pub enum Spread {
     /// As `area`, but fading with the height of the atom in its cap, from full at the top to nothing at the rim: no
     /// jump of traction at the rim, so that coarse meshes feel the same load as fine ones.
     Tapered,
+}
+
+impl Spread {
+    /// The chosen atoms of a cell and the share of each; heights in a cap are along `up`, `areas` are those around all atoms (µm²).
+    pub(super) fn shares(
+        self,
+        path: &str,
+        selection: &Selection,
+        up: Vec3,
+        areas: &[f64],
+        to: &mut Builder,
+    ) -> Vec<(u32, f64)> {
+        let (atoms, heights) = to.atoms_and_heights(path, selection, up);
+        let weight = |atom: u32| match self {
+            Self::Equal => 1.0,
+            Self::Area => areas[atom as usize],
+            Self::Tapered => areas[atom as usize] * heights[atom as usize],
+        };
+        let total: f64 = atoms.iter().map(|&atom| weight(atom)).sum();
+        atoms.into_iter().map(|atom| (atom, weight(atom) / total)).collect()
+    }
 }
 
 /// Springs between atoms of the same cell.
@@ -194,20 +220,17 @@ impl Applied {
         let areas = geometry::atom_areas(to.rest());
         for (i, load) in self.loads.iter().enumerate() {
             let direction = unit(load.direction);
-            let (atoms, heights) = to.atoms_and_heights(&format!("loads[{i}]"), &load.selection, direction);
-            let weight = |atom: u32| match load.spread {
-                Spread::Equal => 1.0,
-                Spread::Area => areas[atom as usize],
-                Spread::Tapered => areas[atom as usize] * heights[atom as usize],
-            };
-            let total: f64 = atoms.iter().map(|&atom| weight(atom)).sum();
-            let shares = atoms.into_iter().map(|atom| (atom, weight(atom) / total)).collect();
+            let shares = load.spread.shares(&format!("loads[{i}]"), &load.selection, direction, &areas, to);
             let load = load::Load::new(&load.name, shares, direction, course(load.force.points()));
             to.forces.push(mechanics::Force::Load(load));
         }
         for (i, pressure) in self.pressures.iter().enumerate() {
             let force = pressure.compiled(&format!("pressures[{i}]"), to);
             to.forces.push(mechanics::Force::Pressure(force));
+        }
+        for (i, torque) in self.torques.iter().enumerate() {
+            let force = torque.compiled(&format!("torques[{i}]"), to);
+            to.forces.push(mechanics::Force::Torque(force));
         }
         to.forces.extend(self.traps.iter().map(|trap| mechanics::Force::Trap(trap.compiled())));
         for (i, plate) in self.plates.iter().enumerate() {

@@ -59,6 +59,7 @@ mod selection;
 mod semantics;
 mod solid;
 mod tool;
+mod torque;
 mod tree;
 mod viscosity;
 mod volume;
@@ -100,7 +101,7 @@ pub use volume::{VolumeControl, VolumeRule};
 
 use crate::recorded::{
     Motion, NAMED, OnDemand, names_by_type, series_of_moved, series_of_plates, series_of_pressures, series_of_tool,
-    series_of_traps,
+    series_of_torques, series_of_traps,
 };
 use crate::units::Time;
 use indexmap::IndexMap;
@@ -179,10 +180,10 @@ impl Experiment {
             || self.cells.values().any(|cell| !cell.applied.moved.is_empty())
     }
 
-    /// Whether a series is of what is moved, of a trap or of a pressure, or may be of a load in a file.
+    /// Whether a series is of what is moved, of a trap, a pressure or a torque, or may be of a load in a file.
     pub(super) fn is_of_what_is_moved(&self, series: &str) -> bool {
         let of_cells = [self.series_of_moved(), self.series_of_traps(), self.series_of_plates()].concat();
-        let own = [of_cells, self.series_of_tools(), self.series_of_pressures()].concat();
+        let own = [of_cells, self.series_of_tools(), self.series_of_pressures(), self.series_of_torques()].concat();
         self.may_be_of_load_file(series) || own.iter().any(|name| name == series)
     }
 
@@ -232,6 +233,14 @@ impl Experiment {
         let types: Vec<(&str, Vec<String>)> =
             self.cells.iter().map(|(kind, cell)| (kind.as_str(), own(cell))).collect();
         series_of_pressures(&types)
+    }
+
+    /// Names of the series of torques.
+    pub(super) fn series_of_torques(&self) -> Vec<String> {
+        let own = |cell: &CellType| cell.applied.torques.iter().map(|own| own.name.clone()).collect();
+        let types: Vec<(&str, Vec<String>)> =
+            self.cells.iter().map(|(kind, cell)| (kind.as_str(), own(cell))).collect();
+        series_of_torques(&types).into_iter().map(|(name, _)| name).collect()
     }
 
     /// Names of the series of loads.

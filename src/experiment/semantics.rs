@@ -50,6 +50,7 @@ pub(super) fn check(document: &Document, files: Files) -> (Vec<Fault>, Vec<Late>
         check.remembering_atoms(&path, cell);
         check.pseudopods(&path, cell);
         check.applied(&path, &cell.applied);
+        check.torques(&path, cell);
         check.moved_by_scheme(&path, cell);
         check.rigid(&path, cell);
         check.viscosity(&path, cell);
@@ -151,6 +152,7 @@ impl Check<'_> {
             experiment.series_of_plates(),
             experiment.series_of_tools(),
             pressures,
+            experiment.series_of_torques(),
         ]
         .concat();
         let contact = self.document.experiment.contact.as_ref();

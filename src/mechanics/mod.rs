@@ -35,6 +35,7 @@ pub mod stiffness;
 pub mod sum;
 pub mod tangent;
 pub mod tension;
+pub mod torque;
 pub mod trap;
 pub mod viscosity;
 pub mod volume;
@@ -71,6 +72,8 @@ pub enum Force {
     Load(load::Load),
     /// A pressure with a course in time on some facets.
     Pressure(pressure::Pressure),
+    /// A torque with a course in time on some atoms.
+    Torque(torque::Torque),
     /// Contractile fibres.
     Fibres(fibres::Fibres),
     /// Weight.
@@ -94,7 +97,7 @@ impl Force {
             Self::ShapeMemory(_) | Self::Angles(_) | Self::Membrane(_) | Self::Tension(_) => true,
             Self::Ordering(_) | Self::Bending(_) | Self::Springs(_) | Self::Solid(_) | Self::Barrier(_) => true,
             Self::Load(_) | Self::Fibres(_) | Self::Gravity(_) | Self::Attraction(_) => false,
-            Self::Pressure(_) | Self::Trap(_) | Self::Plate(_) => false,
+            Self::Pressure(_) | Self::Torque(_) | Self::Trap(_) | Self::Plate(_) => false,
         }
     }
 
@@ -102,18 +105,18 @@ impl Force {
     pub fn is_outer(&self) -> bool {
         match self {
             Self::Load(_) | Self::Pressure(_) | Self::Gravity(_) | Self::Attraction(_) => true,
-            Self::Trap(_) | Self::Plate(_) => true,
+            Self::Torque(_) | Self::Trap(_) | Self::Plate(_) => true,
             Self::ShapeMemory(_) | Self::Angles(_) | Self::Membrane(_) | Self::Tension(_) | Self::Ordering(_) => false,
             Self::Bending(_) | Self::Springs(_) | Self::Solid(_) | Self::Barrier(_) | Self::Fibres(_) => false,
         }
     }
 
     /// Whether it is, at any instant, the gradient of the energy that it tells. Not so are the documents' shape memories, pulls
-    /// that keep order, and pressures on a part of a surface.
+    /// that keep order, pressures on a part of a surface, and torques.
     pub fn is_conservative(&self) -> bool {
         match self {
             Self::ShapeMemory(force) => force.is_gradient(),
-            Self::Angles(_) | Self::Ordering(_) | Self::Pressure(_) => false,
+            Self::Angles(_) | Self::Ordering(_) | Self::Pressure(_) | Self::Torque(_) => false,
             _ => true,
         }
     }
@@ -123,6 +126,7 @@ impl Force {
         match self {
             Self::Load(force) => Some(&force.force),
             Self::Pressure(force) => Some(&force.pressure),
+            Self::Torque(force) => Some(&force.torque),
             Self::Fibres(force) => Some(&force.activation),
             Self::Trap(force) => force.course(),
             Self::Plate(force) => Some(&force.displacement),
@@ -160,7 +164,7 @@ impl Force {
             Self::Attraction(force) => force.add_stiffness(matrix),
             Self::Plate(force) => force.add_stiffness(matrix),
             // What a trap does to a body as a whole is in the step beside K, eq. (rigid.4).
-            Self::Load(_) | Self::Pressure(_) | Self::Gravity(_) | Self::Trap(_) => {}
+            Self::Load(_) | Self::Pressure(_) | Self::Torque(_) | Self::Gravity(_) | Self::Trap(_) => {}
         }
     }
 
@@ -193,7 +197,7 @@ impl Force {
             Self::Fibres(force) => Some(force.largest_stiffness()),
             Self::Attraction(force) => Some(force.stiffness),
             Self::Plate(force) => Some(force.largest_stiffness()),
-            Self::Load(_) | Self::Pressure(_) | Self::Gravity(_) | Self::Trap(_) => Some(0.0),
+            Self::Load(_) | Self::Pressure(_) | Self::Torque(_) | Self::Gravity(_) | Self::Trap(_) => Some(0.0),
             Self::ShapeMemory(_) | Self::Angles(_) | Self::Membrane(_) | Self::Tension(_) => None,
             Self::Ordering(_) | Self::Bending(_) | Self::Springs(_) | Self::Solid(_) | Self::Barrier(_) => None,
         }
@@ -204,6 +208,7 @@ impl Force {
         match self {
             Self::Load(force) => force.strength(context.time, set),
             Self::Pressure(force) => [force.pressure.at(context.time); LANES],
+            Self::Torque(force) => [force.torque.at(context.time); LANES],
             Self::Fibres(force) => force.activation(context.time, set),
             Self::Gravity(_) => [context.mass; LANES],
             Self::Trap(force) => [force.gone(context.time); LANES],
@@ -228,6 +233,7 @@ impl Force {
             Self::Barrier(force) => force.add_forces(x, f),
             Self::Load(force) => force.add_forces(strength, x, f),
             Self::Pressure(force) => force.add_forces(strength, x, f),
+            Self::Torque(force) => force.add_forces(strength, x, f),
             Self::Fibres(force) => force.add_forces(strength, x, f),
             Self::Gravity(force) => force.add_forces(strength, x, f),
             Self::Attraction(force) => force.add_forces(x, f),

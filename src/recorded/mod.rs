@@ -18,7 +18,7 @@ pub use contacts::{CONTACTS, ContactQuantity, ContactSeries, Recorded, Touch, co
 pub use fibres::FIBRES;
 pub use named::{
     Motion, NAMED, OUT_OF_BALANCE, names_by_type, series_of_moved, series_of_plates, series_of_pressures,
-    series_of_tool, series_of_traps,
+    series_of_tool, series_of_torques, series_of_traps,
 };
 pub use series::{DERIVED, OnDemand, cell_label, cell_quantities, cell_series, cell_unit, derived};
 pub use traction::TRACTION;

@@ -1,16 +1,18 @@
-//! Series of what types of cells have by names: loads, pressures, traps, flexible plates, and atoms that are moved on courses.
+//! Series of what types of cells have by names: loads, pressures, torques, traps, flexible plates, and atoms that are moved on courses.
 
 /// The series of the scene that tells how far from equilibrium its cells are, where a run ends there, pN.
 pub const OUT_OF_BALANCE: &str = "out_of_balance";
 
 /// What the series of things with names begin with, and what a chart calls them: `load.NAME` and its like.
-pub const NAMED: [(&str, &str); 16] = [
+pub const NAMED: [(&str, &str); 18] = [
     ("load", "load"),
     ("pressure", "pressure"),
     ("displacement", "displacement"),
     ("force", "force"),
     ("angle", "angle"),
     ("torque", "torque"),
+    ("twist", "applied torque"),
+    ("twist_angle", "angle under torque"),
     ("trap_x", "force along x of trap"),
     ("trap_y", "force along y of trap"),
     ("trap_z", "force along z of trap"),
@@ -82,6 +84,14 @@ pub fn series_of_plates(types: &[(&str, Vec<String>)]) -> Vec<(String, &'static 
 /// Names of the series of pressures, in pN/µm²: `pressure.NAME`. Of each type its name and the names of its pressures.
 pub fn series_of_pressures(types: &[(&str, Vec<String>)]) -> Vec<String> {
     names_by_type(types).into_iter().map(|name| format!("pressure.{name}")).collect()
+}
+
+/// Names and units of the series of torques: `twist.NAME` and `twist_angle.NAME`. Of each type its name and the names of its torques.
+pub fn series_of_torques(types: &[(&str, Vec<String>)]) -> Vec<(String, &'static str)> {
+    let series = |name: String| {
+        [("twist", "pN um"), ("twist_angle", "rad")].map(|(word, unit)| (format!("{word}.{name}"), unit))
+    };
+    names_by_type(types).into_iter().flat_map(series).collect()
 }
 
 #[cfg(test)]

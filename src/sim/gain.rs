@@ -52,6 +52,7 @@ fn is_left_alone(model: &Model, state: &State) -> bool {
     let is_idle = |force: &Force| match force {
         Force::Load(load) => state.chemistry.controls.forces.is_empty() && load.force.is_zero_from(state.time),
         Force::Pressure(own) => own.pressure.is_zero_from(state.time),
+        Force::Torque(own) => own.torque.is_zero_from(state.time),
         _ => false,
     };
     let is_alone = |(kind, now): (&Kind, &KindState)| {

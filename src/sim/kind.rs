@@ -15,6 +15,7 @@ use crate::mechanics::solid::Solid;
 use crate::mechanics::stiffness::StiffnessMatrix;
 use crate::mechanics::sum::stiffness;
 use crate::mechanics::tangent::Tangent;
+use crate::mechanics::torque::Torque;
 use crate::mechanics::trap::Trap;
 use crate::mechanics::viscosity::Viscosity;
 
@@ -220,6 +221,14 @@ impl Kind {
     pub fn pressures(&self) -> impl Iterator<Item = &Pressure> {
         self.forces.iter().filter_map(|force| match force {
             Force::Pressure(pressure) => Some(pressure),
+            _ => None,
+        })
+    }
+
+    /// Torques on its cells.
+    pub fn torques(&self) -> impl Iterator<Item = &Torque> {
+        self.forces.iter().filter_map(|force| match force {
+            Force::Torque(torque) => Some(torque),
             _ => None,
         })
     }

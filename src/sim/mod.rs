@@ -7,12 +7,14 @@ pub mod chemistry;
 pub mod constraints;
 pub mod contact;
 pub mod controls;
+mod copies;
 mod coupled;
 mod coupled_scratch;
 #[cfg(test)]
 mod coupled_tests;
 mod dissipation;
 mod elasticity;
+mod eliminate;
 pub mod fibre_state;
 mod fibres;
 mod finite;

@@ -4,15 +4,16 @@
 //! mobility of the cell (eq. step.4, step.5) and C the normals of the touching atoms, the reactions r ≥ 0 solve
 //! `C M Cᵀ r = −gap − C Y`. So a cell that rests on an obstacle is in exact balance, however large the step.
 
+use super::copies::Copies;
+use super::eliminate::eliminate;
 use super::kind::{Kind, VolumeRule};
 use super::model::Model;
 use super::obstacle::Obstacle;
 use super::pressure::pressure;
 use super::rolling::{Roll, add_rolls};
-use super::solver::{Stage, System, solve_block};
+use super::solver::{Stage, System};
 use super::spots::{Spot, find_spots};
 use crate::Vec3;
-use crate::mechanics::lanes::LANES;
 
 /// What a correction needs to know.
 #[derive(Clone, Copy)]
@@ -41,6 +42,11 @@ const YIELDING: f64 = 1e-9;
 
 /// Rounds of the active-set method; it ends in two or three, a cycle is cut here and the projection does the rest.
 const ROUNDS: usize = 12;
+
+/// More than this many times what pressed before, and some, does not come to press at once: where it seems so, forces that nearly cancel have thrown the
+/// cell about, and its step is to be made shorter.
+const GROWTH: usize = 4;
+const SOME: usize = 256;
 
 /// Scratch of a block: empty until a cell of the block touches an obstacle, then kept.
 #[derive(Debug, Clone, Default)]
@@ -80,15 +86,6 @@ pub struct TouchScratch {
     copies: Copies,
 }
 
-/// A block whose lanes are copies of one cell, each with a unit reaction of its own.
-#[derive(Debug, Clone, Default)]
-struct Copies {
-    x: Vec<f64>,
-    columns: Vec<f64>,
-    spare: Vec<f64>,
-    spare2: Vec<f64>,
-}
-
 /// Arrays `[atom][axis]` of one cell.
 #[derive(Debug, Clone, Default)]
 struct CellArrays {
@@ -116,10 +113,7 @@ impl TouchScratch {
         for array in [&mut self.reactions, &mut c.pressed, &mut c.gradient, &mut c.swell, &mut c.free, &mut c.moved] {
             array.fill(f64::NAN);
         }
-        let copies = &mut self.copies;
-        for array in [&mut copies.x, &mut copies.columns, &mut copies.spare, &mut copies.spare2] {
-            array.fill(f64::NAN);
-        }
+        self.copies.poison();
     }
 }
 
@@ -341,31 +335,6 @@ fn solve_reactions(scene: &Scene, s: &mut TouchScratch) -> bool {
     eliminate(rows, &mut s.system)
 }
 
-/// Gauss's elimination with row exchange in `rows × (rows + 1)` numbers; false when the matrix is singular.
-fn eliminate(rows: usize, system: &mut [f64]) -> bool {
-    let width = rows + 1;
-    for column in 0..rows {
-        let size = |row: &usize| system[row * width + column].abs();
-        let Some(pivot) = (column..rows).max_by(|a, b| size(a).total_cmp(&size(b))) else { return false };
-        if system[pivot * width + column] == 0.0 || !system[pivot * width + column].is_finite() {
-            return false;
-        }
-        for k in 0..width {
-            system.swap(column * width + k, pivot * width + k);
-        }
-        for row in (0..rows).filter(|&row| row != column) {
-            let part = system[row * width + column] / system[column * width + column];
-            for k in column..width {
-                system[row * width + k] -= part * system[column * width + k];
-            }
-        }
-    }
-    for row in 0..rows {
-        system[row * width + rows] /= system[row * width + row];
-    }
-    true
-}
-
 /// Releases spots that pull, takes up spots that pass; tells whether the set changed.
 fn change_active(scene: &Scene, s: &mut TouchScratch) -> bool {
     let (before, width) = (s.active.len(), s.active.len() + s.rolling.len() + 1);
@@ -375,16 +344,13 @@ fn change_active(scene: &Scene, s: &mut TouchScratch) -> bool {
     let c = &s.cell;
     let end = |atom| end_of(scene.stage, vector_of(&c.first, atom), vector_of(&c.moved, atom));
     find_touching(scene, &s.spots, end, &mut s.found);
-    let mut grown = false;
-    for &number in &s.found {
-        let spot = &s.spots[number];
-        let passes = spot.gap + spot.mean(end).dot(&spot.normal) < -TOUCH * scene.kind.edge;
-        if passes && !s.active.contains(&number) {
-            s.active.push(number);
-            grown = true;
-        }
+    let passes = |spot: &Spot| spot.gap + spot.mean(end).dot(&spot.normal) < -TOUCH * scene.kind.edge;
+    s.found.retain(|number| passes(&s.spots[*number]) && !s.active.contains(number));
+    if s.found.len() > GROWTH * before + SOME {
+        return false;
     }
-    released || grown
+    s.active.extend(&s.found);
+    released || !s.found.is_empty()
 }
 
 /// M n for the known spots from a number on: how the whole cell moves under a unit reaction of each, its volume
@@ -433,28 +399,5 @@ fn answer(
             column.iter_mut().zip(&c.swell).for_each(|(to, s)| *to += held * s);
         }
         pressures.push(held);
-    }
-}
-
-impl Copies {
-    /// Solves for columns of a cell whose atoms are at `x`, as many at a time as there are lanes, which takes about as long as one alone.
-    fn solve(&mut self, kind: &Kind, system: &System, x: &[f64], columns: &mut [f64]) {
-        let size = x.len();
-        self.x.clear();
-        self.x.extend(x.iter().flat_map(|value| [*value; LANES]));
-        for array in [&mut self.columns, &mut self.spare, &mut self.spare2] {
-            array.resize(LANES * size, 0.0);
-        }
-        for columns in columns.chunks_mut(LANES * size) {
-            self.columns.fill(0.0);
-            for (lane, column) in columns.chunks_exact(size).enumerate() {
-                self.columns.chunks_exact_mut(LANES).zip(column).for_each(|(row, value)| row[lane] = *value);
-            }
-            let Self { x, columns: together, spare, spare2 } = self;
-            solve_block(kind, LANES, system, x, together, spare, spare2);
-            for (lane, column) in columns.chunks_exact_mut(size).enumerate() {
-                self.columns.chunks_exact(LANES).zip(column).for_each(|(row, value)| *value = row[lane]);
-            }
-        }
     }
 }

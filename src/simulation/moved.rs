@@ -1,8 +1,10 @@
-//! What is recorded of atoms that are moved on courses, how far they are and the force that it takes, of pressures, traps and flexible plates.
+//! What is recorded of atoms that are moved on courses, how far they are and the force that it takes, of pressures, torques, traps and flexible plates.
 
 use crate::Vec3;
 use crate::mechanics::moved::Moved;
-use crate::recorded::{Motion, series_of_moved, series_of_plates, series_of_pressures, series_of_traps};
+use crate::recorded::{
+    Motion, series_of_moved, series_of_plates, series_of_pressures, series_of_torques, series_of_traps,
+};
 use crate::sim::{Kind, KindState, Model, State};
 
 /// Names and units of their series.
@@ -54,6 +56,24 @@ pub fn names_of_pressures(model: &Model) -> Vec<(String, String)> {
 /// Adds the pressures at this instant.
 pub fn record_pressures(model: &Model, state: &State, values: &mut Vec<f64>) {
     values.extend(model.kinds.iter().flat_map(Kind::pressures).map(|own| own.pressure.at(state.time)));
+}
+
+/// Names and units of the series of torques.
+pub fn names_of_torques(model: &Model) -> Vec<(String, String)> {
+    let own = |kind: &Kind| kind.torques().map(|torque| torque.name.clone()).collect();
+    let types: Vec<(&str, Vec<String>)> = model.kinds.iter().map(|kind| (kind.name.as_str(), own(kind))).collect();
+    series_of_torques(&types).into_iter().map(|(name, unit)| (name, unit.to_owned())).collect()
+}
+
+/// Adds the torques at this instant, and by how much cells have turned under each in the mean; NaN where there is no cell.
+pub fn record_torques(model: &Model, state: &State, values: &mut Vec<f64>) {
+    for (kind, now) in model.kinds.iter().zip(&state.kinds) {
+        for torque in kind.torques() {
+            let angle = |cell: usize| torque.angle(|atom| now.position(kind, cell, atom as usize));
+            let mean = (0..now.cells()).map(angle).sum::<f64>() / now.cells() as f64;
+            values.extend([torque.torque.at(state.time), mean]);
+        }
+    }
 }
 
 /// Names and units of the series of traps.

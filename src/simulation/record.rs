@@ -38,6 +38,7 @@ pub fn outline_of(model: &Model) -> Layout {
         moved::names_of_plates(model),
         tools::names(model),
         moved::names_of_pressures(model),
+        moved::names_of_torques(model),
     ];
     layout.scene_series = loads.chain(named.into_iter().flatten()).collect();
     layout.scene_series.extend(model.rest.map(|_| (OUT_OF_BALANCE.to_owned(), "pN".to_owned())));
@@ -220,6 +221,7 @@ impl Recorder {
         moved::record_plates(model, state, &mut frame.scene);
         tools::record(model, state, &mut frame.scene);
         moved::record_pressures(model, state, &mut frame.scene);
+        moved::record_torques(model, state, &mut frame.scene);
         frame.scene.extend(model.rest.map(|_| state.out_of_balance.unwrap_or(f64::NAN)));
         if let Some(contact) = &model.contact {
             self.touch.look(model, &contact.scene_of(&state.kinds), state, ws, dt, &mut frame);

@@ -117,6 +117,12 @@ fn the_suction_that_draws_a_cell_in_is_that_of_its_tension() {
 }
 
 #[test]
+#[ignore = "slow: two minutes; cargo test --release --test figures an_elastic_body_is -- --ignored"]
+fn an_elastic_body_is_drawn_into_a_pipette_as_a_half_space_is() {
+    experiment_keeps_its_word("aspiration", "elastic.toml");
+}
+
+#[test]
 fn microplates_read_what_was_put_in() {
     experiment_keeps_its_word("microplates", "experiment.toml");
     experiment_keeps_its_word("microplates", "uniform.toml");
@@ -150,7 +156,7 @@ fn a_gel_that_a_cell_pulls_at_moves_as_a_half_space() {
 }
 
 #[test]
-#[ignore = "slow: twelve minutes; cargo test --release --test figures a_finer_gel -- --ignored"]
+#[ignore = "slow: half an hour; cargo test --release --test figures a_finer_gel -- --ignored"]
 fn a_finer_gel_moves_more_as_a_half_space() {
     experiment_keeps_its_word("traction_gel", "fine.toml");
 }

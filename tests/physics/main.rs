@@ -45,6 +45,7 @@ mod sphere;
 mod stability_limits;
 mod step;
 mod tools;
+mod torques;
 mod tractions;
 mod virtual_adhesives;
 mod viscosity;

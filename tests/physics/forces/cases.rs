@@ -29,6 +29,7 @@ use pseudopod::mechanics::springs::{Spring, Springs};
 use pseudopod::mechanics::stiffness::StiffnessMatrix;
 use pseudopod::mechanics::sum::measure_forces;
 use pseudopod::mechanics::tension::Tension;
+use pseudopod::mechanics::torque::Torque;
 use pseudopod::mechanics::trap::Trap;
 use pseudopod::mechanics::{CONTROLLED, Force};
 
@@ -53,7 +54,7 @@ pub struct Case {
 pub const EDGE: f64 = 1.75;
 
 /// How many forces there are.
-pub const FORCES: usize = 16;
+pub const FORCES: usize = 17;
 
 /// A number below [`FORCES`] for each force: one that is new must be named here, counted above and given a case below.
 pub fn number(force: &Force) -> usize {
@@ -74,6 +75,7 @@ pub fn number(force: &Force) -> usize {
         Force::Pressure(_) => 13,
         Force::Solid(_) => 14,
         Force::Plate(_) => 15,
+        Force::Torque(_) => 16,
     }
 }
 
@@ -253,6 +255,9 @@ fn driven() -> Vec<Case> {
         displacement: course(),
     });
     let above = Beyond { point: Vec3::new(0.0, 0.0, 1.3), direction: Vec3::new(0.6, 0.0, 0.8), radius: None };
+    let shares = (0..10).map(|atom| (atom, 0.1)).collect();
+    let axis = Vec3::new(0.6, 0.0, 0.8);
+    let torque = Force::Torque(Torque::new("twist", shares, axis, course(), &cell().positions));
     let pressure = |beyond| {
         let facets = icosphere(5.0, 1).facets;
         Force::Pressure(Pressure { name: "pressure".into(), facets, pressure: course(), beyond, profile: None })
@@ -273,6 +278,7 @@ fn driven() -> Vec<Case> {
         outer("plate", plate, true),
         outer("pressure", pressure(None), false),
         outer("pressure beyond a plane", pressure(Some(above)), false),
+        outer("torque", torque, false),
         outer("pressure in a mouth", pressure(Some(Beyond { radius: Some(2.2), ..above })), false),
     ]
 }
