@@ -58,6 +58,7 @@ mod schema;
 mod selection;
 mod semantics;
 mod solid;
+mod spread;
 mod tool;
 mod torque;
 mod tree;
@@ -78,7 +79,7 @@ pub use contact::{Between, Bonds, Catch, Contact, ContactModel, Zones};
 pub use document::Document;
 #[cfg(feature = "cli")]
 pub(crate) use document::near_file;
-pub use loads::{Applied, Fibre, Fixed, Link, Load, Rest, Spread};
+pub use loads::{Applied, Fibre, Fixed, Link, Load, Rest};
 pub use mechanics::{Barrier, Form, Mechanics, Reaction, ShapeMemory, ShapeStrength, Springs};
 pub use membrane::{BendingRest, Law, Membrane};
 pub use motility::{Attraction, Brownian, Motility, Space};
@@ -95,6 +96,7 @@ pub use scene::{Environment, Equilibrium, Integrator, Method, Output, Plane, Run
 pub use schema::{schema, schema_of};
 pub use selection::{Cap, CapExtent, LinkPattern, Linked, Selection};
 pub use solid::{Material, Neighbours, Solid, VolumeOver};
+pub use spread::Spread;
 pub use tool::{Tool, ToolSurface};
 pub use viscosity::Viscosity;
 pub use volume::{VolumeControl, VolumeRule};

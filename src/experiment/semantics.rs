@@ -19,6 +19,7 @@ mod pseudopods;
 mod rigid;
 mod scene;
 mod tools;
+mod torques;
 
 /// Whether files that a document names have to be there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,10 +1,8 @@
 //! Torques on some atoms of cells. What documents say of them, and what it means.
 
-use super::cells::CellType;
 use super::compile::{Builder, course, unit};
-use super::loads::Spread;
 use super::selection::Selection;
-use super::semantics::Check;
+use super::spread::Spread;
 use crate::geometry;
 use crate::mechanics::torque;
 use crate::units::Energy;
@@ -46,28 +44,5 @@ impl Torque {
             to.fault(path, "on a line", found, "choose more atoms: a wider cap, or all = true");
         }
         made
-    }
-}
-
-impl Check<'_> {
-    /// What must hold of the torques on a type of cells.
-    pub(super) fn torques(&mut self, path: &str, cell: &CellType) {
-        let torques = &cell.applied.torques;
-        if !torques.is_empty() && cell.mechanics.rigid.is_some_and(|rigid| !rigid.turns) {
-            let message = format!("`{path}` never turns, and has torques");
-            let help = "leave `turns = false` out of `rigid`, or leave the torques out";
-            self.fault(&format!("{path}.torques"), "without effect", message, help);
-        }
-        for (index, torque) in torques.iter().enumerate() {
-            let path = format!("{path}.torques[{index}]");
-            self.selection(&path, &torque.selection);
-            self.direction(&format!("{path}.axis"), torque.axis);
-            self.course(&format!("{path}.torque"), &torque.torque.points());
-            if let Some(other) = torques[..index].iter().position(|other| other.name == torque.name) {
-                let message = format!("`{path}.name` is the name of torque {other} too");
-                let help = "names of torques differ within a type of cells";
-                self.fault(&format!("{path}.name"), "taken", message, help);
-            }
-        }
     }
 }
