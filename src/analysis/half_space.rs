@@ -256,10 +256,13 @@ mod tests {
             // One part in 1 500 beside the point is what the sum is uncertain by.
             assert!((found - expected).norm() < 1e-3 * expected.norm(), "{at}: {found} for {expected}");
         }
-        // Far away both rules agree.
+        // Where the rule for far facets begins both agree within a hundredth, of tractions that nearly cancel as these, and far away entirely.
         let at = Vec3::new(3.0, 3.5, 0.0);
         let (near, far) = (from_near(&HALF_SPACE, at, facet()), from_far(&HALF_SPACE, at, facet()));
-        assert!((near - far).norm() < 1e-3 * near.norm(), "{near} and {far}");
+        assert!((near - far).norm() < 2e-2 * near.norm(), "{near} and {far}");
+        let at = 10.0 * at;
+        let (near, far) = (from_near(&HALF_SPACE, at, facet()), from_far(&HALF_SPACE, at, facet()));
+        assert!((near - far).norm() < 2e-4 * near.norm(), "{near} and {far}");
     }
 
     #[test]
@@ -269,7 +272,9 @@ mod tests {
         let out = Vec3::new(0.2, -1.3, 0.0).normalize();
         for at in [on_edge, a.at, b.at, c.at] {
             let there = from_near(&HALF_SPACE, at, facet());
-            for (off, most) in [(1e-3, 2e-2), (1e-6, 5e-5), (1e-10, 1e-8), (1e-13, 1e-8)] {
+            for off in [1e-3, 1e-6, 1e-10, 1e-13_f64] {
+                // It bends as off log off does.
+                let most = 5.0 * off * (1.0 - off.ln()) + 1e-11;
                 for side in [-1.0, 1.0] {
                     let beside = from_near(&HALF_SPACE, at + side * off * out, facet());
                     assert!((beside - there).norm() < most * there.norm(), "{off}: {beside} for {there}");
