@@ -14,6 +14,7 @@ use super::rolling::{Roll, add_rolls};
 use super::solver::{Stage, System};
 use super::spots::{Spot, find_spots};
 use crate::Vec3;
+use crate::mechanics::integrator::StepSize;
 
 /// What a correction needs to know.
 #[derive(Clone, Copy)]
@@ -346,7 +347,9 @@ fn change_active(scene: &Scene, s: &mut TouchScratch) -> bool {
     find_touching(scene, &s.spots, end, &mut s.found);
     let passes = |spot: &Spot| spot.gap + spot.mean(end).dot(&spot.normal) < -TOUCH * scene.kind.edge;
     s.found.retain(|number| passes(&s.spots[*number]) && !s.active.contains(number));
-    if s.found.len() > GROWTH * before + SOME {
+    // Steps of one length have no error that would make them again.
+    let may_be_shorter = matches!(scene.model.integrator.size, StepSize::Adaptive { .. });
+    if may_be_shorter && s.found.len() > GROWTH * before + SOME {
         return false;
     }
     s.active.extend(&s.found);
